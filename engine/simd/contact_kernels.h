@@ -1,0 +1,9 @@
+// Fused vector passes of the contact solver.
+#pragma once
+
+namespace brinell::simd {
+
+template <class Real>
+struct ContactKernels {};
+
+}  // namespace brinell::simd

@@ -1,0 +1,8 @@
+// Influence coefficients, many offsets at a time.
+#pragma once
+
+namespace brinell::simd {
+
+struct InfluenceKernels {};
+
+}  // namespace brinell::simd

@@ -1,0 +1,9 @@
+// Passes of the convolution.
+#pragma once
+
+namespace brinell::simd {
+
+template <class Real>
+struct TransformKernels {};
+
+}  // namespace brinell::simd
