@@ -1,0 +1,379 @@
+/* brinell: semi-analytical contact mechanics of real surfaces.
+ *
+ * Press two bodies together, given the gap between them, their materials and a history of loads; get pressure,
+ * contact area, approach and displacement, each with a certificate of its error.
+ *
+ *   brn_engine  threads, caches and instruction set; one per program is enough, shared by all runs
+ *   brn_scene   a description: grid, bodies, surfaces, load history, solver
+ *   brn_run     a scene planned on an engine, advanced increment by increment and asked for results
+ *
+ *   brn_engine *engine; brn_scene *scene; brn_run *run;
+ *   brn_engine_create(NULL, &engine);
+ *   brn_scene_create(&scene);
+ *   ... brn_scene_set_grid, brn_scene_set_body, brn_scene_add_shape, brn_scene_add_step ...
+ *   brn_run_create(engine, scene, &run);
+ *   brn_run_execute(run, NULL, NULL);
+ *   brn_run_get_increment(run, 0, &result);
+ *
+ * Units are SI everywhere: m, N, Pa, rad, s. Surface fields are row-major with x inner: node (i, j) is element
+ * j*nx + i and lies at ((i - (nx-1)/2)*dx, (j - (ny-1)/2)*dy). Pressure is positive in compression; it is uniform
+ * on the cell around its node. The deformed gap is gap + displacement - approach.
+ *
+ * Rules of this interface
+ *   - Every call that can fail returns a brn_status. A message for a person, which names the argument, its value and
+ *     what is allowed, is kept per handle and thread (brn_engine_message, ...), or per thread where there is no
+ *     handle yet (brn_last_message).
+ *   - A create call sets *out to NULL on failure. Destroying NULL does nothing. No exception, abort or exit crosses
+ *     this interface.
+ *   - Option structs begin with struct_size. Initialise them with their brn_..._init function: it fills in the size
+ *     and the defaults. Members are only ever appended; the engine reads those that struct_size covers and uses the
+ *     defaults for the others, and writes only those of a result that struct_size covers.
+ *   - The caller owns all arrays; they are borrowed for the duration of the call.
+ *   - An engine may be used from several threads at once. A scene or run is used by one thread at a time; a second
+ *     one gets BRN_WRONG_STATE. Distinct runs work concurrently on one engine.
+ *   - Same build, same instruction set: the same bits, whatever the number of threads, from process to process.
+ */
+#ifndef BRINELL_H
+#define BRINELL_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#if defined(_WIN32)
+#define BRN_API
+#else
+#define BRN_API __attribute__((visibility("default")))
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---------------------------------------------------------------- status */
+
+typedef int32_t brn_status;
+
+enum {
+  BRN_OK = 0,
+  BRN_INVALID_ARGUMENT = 10, /* NULL, out of range, not finite, unknown constant */
+  BRN_INVALID_SCENE = 20,    /* the parts are valid, but do not fit together or are incomplete */
+  BRN_WRONG_STATE = 30,      /* call out of order, or the handle is in use by another thread */
+  BRN_SHORT_BUFFER = 40,     /* the caller's array is too small; the needed size is reported */
+  BRN_UNSUPPORTED = 50,      /* this machine or build cannot do it */
+  BRN_OUT_OF_MEMORY = 60,    /* an allocation failed */
+  BRN_TOO_LARGE = 70,        /* refused by the plan: more memory than is allowed */
+  BRN_NOT_CONVERGED = 80,    /* the certificate stays above the tolerance; the result is kept and marked */
+  BRN_NO_EQUILIBRIUM = 85,   /* no state of contact can carry the load */
+  BRN_CANCELLED = 90,        /* the progress callback asked to stop; the run can go on or be saved */
+  BRN_DAMAGED_DATA = 100,    /* a saved run is truncated, altered, or belongs to another scene */
+  BRN_INTERNAL = 1000        /* a defect of brinell: please report the message */
+};
+
+/* "BRN_OK", "BRN_INVALID_ARGUMENT", ...; "unknown status" for other values. Never NULL. */
+BRN_API const char *brn_status_name(brn_status status);
+
+/* Message of this thread's last failed call that had no handle to keep it (create calls, NULL handles); "" if none.
+ * Valid until this thread's next such failure. */
+BRN_API const char *brn_last_message(void);
+
+/* Release of the library, "major.minor.patch". */
+BRN_API const char *brn_version(void);
+
+/* ---------------------------------------------------------------- engine */
+
+typedef struct brn_engine brn_engine;
+
+enum { BRN_ISA_BEST = 0, BRN_ISA_BASELINE = 1, BRN_ISA_AVX2 = 2, BRN_ISA_AVX512 = 3 };
+
+typedef struct brn_engine_options {
+  size_t struct_size;
+  int32_t threads;       /* 0: what the caller itself may use; else at most this many, at most 1024 */
+  int32_t isa;           /* BRN_ISA_...: a set that the machine lacks is BRN_UNSUPPORTED */
+  const char *wisdom;    /* NUL-terminated text of brn_engine_export_wisdom, or NULL: plans by estimate */
+  uint64_t memory_limit; /* bytes that one run may plan; 0: the machine's memory */
+  uint64_t cache_limit;  /* bytes of influence coefficients kept for later runs; 0: a quarter of memory_limit */
+} brn_engine_options;
+
+BRN_API void brn_engine_options_init(brn_engine_options *options);
+
+/* options may be NULL: the defaults. */
+BRN_API brn_status brn_engine_create(const brn_engine_options *options, brn_engine **out);
+
+/* Destroy the engine's runs first. */
+BRN_API void brn_engine_destroy(brn_engine *engine);
+
+/* Message of this thread's last failed call on the engine; "" if none. Valid until its next one. */
+BRN_API const char *brn_engine_message(const brn_engine *engine);
+
+/* Instruction set in use, BRN_ISA_BASELINE or higher, and its name; 0 and "" for NULL. */
+BRN_API int32_t brn_engine_isa(const brn_engine *engine);
+BRN_API const char *brn_engine_isa_name(const brn_engine *engine);
+
+/* Number of threads that the engine may use; 0 for NULL. */
+BRN_API int32_t brn_engine_threads(const brn_engine *engine);
+
+/* Writes the accumulated plans of the Fourier transforms as text, NUL included, for brn_engine_options.wisdom.
+ * *size receives the bytes needed; buffer may be NULL if capacity is 0. */
+BRN_API brn_status brn_engine_export_wisdom(brn_engine *engine, char *buffer, size_t capacity, size_t *size);
+
+/* ---------------------------------------------------------------- scene */
+
+typedef struct brn_scene brn_scene;
+
+BRN_API brn_status brn_scene_create(brn_scene **out);
+BRN_API void brn_scene_destroy(brn_scene *scene);
+BRN_API const char *brn_scene_message(const brn_scene *scene);
+
+enum { BRN_BOUNDARY_FREE = 0, BRN_BOUNDARY_PERIODIC = 1 };
+
+typedef struct brn_grid {
+  size_t struct_size;
+  int64_t nx, ny;   /* nodes, >= 1 */
+  double dx, dy;    /* spacing [m], > 0 */
+  int32_t boundary; /* BRN_BOUNDARY_...; periodic: the mean displacement is zero, so approach is measured from the
+                       mean plane of the deformed surface */
+  int32_t reserved;
+} brn_grid;
+
+BRN_API void brn_grid_init(brn_grid *grid);
+
+/* Before any surface of heights is added; a scene's grid cannot change once it holds one. */
+BRN_API brn_status brn_scene_set_grid(brn_scene *scene, const brn_grid *grid);
+
+enum { BRN_LOWER = 0, BRN_UPPER = 1 };
+
+typedef struct brn_body {
+  size_t struct_size;
+  double youngs_modulus; /* [Pa] > 0; ignored if rigid */
+  double poissons_ratio; /* -1 < nu < 0.5; ignored if rigid */
+  int32_t rigid;         /* 0 or 1 */
+  int32_t reserved;
+} brn_body;
+
+BRN_API void brn_body_init(brn_body *body); /* rigid */
+
+/* Both bodies are rigid until set; a run needs at least one that is not. */
+BRN_API brn_status brn_scene_set_body(brn_scene *scene, int32_t which, const brn_body *body);
+
+enum {
+  BRN_SHAPE_PLANE = 0,
+  BRN_SHAPE_SPHERE = 1,     /* radius */
+  BRN_SHAPE_ELLIPSOID = 2,  /* radius_x, radius_y */
+  BRN_SHAPE_CONE = 3,       /* half_angle from the axis, tip_radius (0: sharp) */
+  BRN_SHAPE_FLAT_PUNCH = 4, /* radius of the flat, edge_radius */
+  BRN_SHAPE_ROLLER = 5,     /* axis along x: radius across it, straight_length, crown_radius beyond */
+  BRN_SHAPE_SINUSOID = 6    /* amplitude, wavelength_x, wavelength_y (0: constant in that direction) */
+};
+
+enum { BRN_PROFILE_PARABOLIC = 0, BRN_PROFILE_EXACT = 1 };
+
+/* Each shape is zero at its apex, above the grid's centre, and grows outwards. */
+typedef struct brn_shape {
+  size_t struct_size;
+  int32_t kind;    /* BRN_SHAPE_... */
+  int32_t profile; /* BRN_PROFILE_...: sphere, ellipsoid, roller */
+  double radius, radius_x, radius_y;
+  double half_angle, tip_radius;
+  double edge_radius;
+  double straight_length, crown_radius;
+  double amplitude, wavelength_x, wavelength_y;
+} brn_shape;
+
+BRN_API void brn_shape_init(brn_shape *shape); /* a plane */
+
+/* The gap is the sum of all shapes minus all heights. */
+BRN_API brn_status brn_scene_add_shape(brn_scene *scene, const brn_shape *shape);
+
+/* Self-affine roughness: heights whose power spectrum is constant between the wavelengths long_cutoff and rolloff,
+ * falls as |q|^(-2-2*hurst) down to short_cutoff, and vanishes outside. The same parameters and seed give the same
+ * bits on every machine. */
+typedef struct brn_roughness {
+  size_t struct_size;
+  double hurst;        /* 0 < hurst <= 1 */
+  double rms_slope;    /* exactly one of rms_slope and */
+  double rms_height;   /* rms_height [m] is positive, the other zero */
+  double long_cutoff;  /* [m]; 0: the longer side of the grid */
+  double rolloff;      /* [m]; 0: long_cutoff */
+  double short_cutoff; /* [m]; 0: twice the larger spacing */
+  uint64_t seed;
+} brn_roughness;
+
+BRN_API void brn_roughness_init(brn_roughness *roughness);
+BRN_API brn_status brn_scene_add_roughness(brn_scene *scene, const brn_roughness *roughness);
+
+enum { BRN_DETREND_NONE = 0, BRN_DETREND_MEAN = 1, BRN_DETREND_PLANE = 2 };
+
+/* Heights of a measured surface [m]: a peak is positive and reduces the gap. Node (i, j) is
+ * values[i*stride_x + j*stride_y]; strides are counted in doubles. */
+typedef struct brn_heights {
+  size_t struct_size;
+  const double *values;
+  int64_t nx, ny; /* must be the grid's */
+  int64_t stride_x, stride_y; /* 0: contiguous, 1 and nx */
+  int32_t detrend; /* BRN_DETREND_... */
+  int32_t reserved;
+} brn_heights;
+
+BRN_API void brn_heights_init(brn_heights *heights);
+
+/* Copies the heights. NaN and infinity are refused with their index. */
+BRN_API brn_status brn_scene_add_heights(brn_scene *scene, const brn_heights *heights);
+
+/* Height statistics of ISO 25178-2, each about the mean plane through zero mean height. */
+typedef struct brn_statistics {
+  size_t struct_size;
+  double sa, sq;   /* arithmetic and root mean square height [m] */
+  double ssk, sku; /* skewness and kurtosis */
+  double sp, sv, sz; /* highest peak, deepest valley, their sum [m] */
+  double sdq;      /* root mean square gradient */
+} brn_statistics;
+
+/* Statistics of a caller's heights on spacing dx, dy [m]. */
+BRN_API brn_status brn_height_statistics(const brn_heights *heights, double dx, double dy, brn_statistics *out);
+
+enum { BRN_DRIVE_FORCE = 1, BRN_DRIVE_APPROACH = 2, BRN_DRIVE_MEAN_PRESSURE = 3 };
+
+/* One leg of the load history: from the state before it to `target` in equal increments. The first leg starts from
+ * zero force, or from the approach min(0, first touch). */
+typedef struct brn_step {
+  size_t struct_size;
+  int32_t drive;      /* BRN_DRIVE_...: mean pressure on periodic grids only */
+  int32_t increments; /* >= 1 */
+  double target;      /* N >= 0, m, or Pa >= 0 */
+} brn_step;
+
+BRN_API void brn_step_init(brn_step *step); /* one increment, no drive */
+BRN_API brn_status brn_scene_add_step(brn_scene *scene, const brn_step *step);
+
+enum { BRN_PRECISION_DOUBLE = 0, BRN_PRECISION_MIXED = 1 };
+
+typedef struct brn_solver {
+  size_t struct_size;
+  double tolerance;       /* on the certificate, 1e-14 ... 0.1; default 1e-8 */
+  int32_t max_iterations; /* per increment; default 2000 */
+  int32_t precision;      /* BRN_PRECISION_... */
+} brn_solver;
+
+BRN_API void brn_solver_init(brn_solver *solver);
+BRN_API brn_status brn_scene_set_solver(brn_scene *scene, const brn_solver *solver);
+
+/* ---------------------------------------------------------------- run */
+
+typedef struct brn_run brn_run;
+
+/* Checks the scene as a whole and plans it; copies what it needs, so that the scene may be changed or destroyed
+ * afterwards. Allocates no fields yet. The engine must outlive the run. */
+BRN_API brn_status brn_run_create(brn_engine *engine, const brn_scene *scene, brn_run **out);
+BRN_API void brn_run_destroy(brn_run *run);
+BRN_API const char *brn_run_message(const brn_run *run);
+
+/* One line of the plan: a stage, what it holds or carries out, and the bytes that takes. */
+typedef struct brn_plan_item {
+  size_t struct_size;
+  const char *stage; /* "surface", "contact", ...; lives as long as the run */
+  const char *what;
+  uint64_t bytes;
+} brn_plan_item;
+
+BRN_API int32_t brn_run_plan_count(const brn_run *run);
+BRN_API brn_status brn_run_get_plan_item(brn_run *run, int32_t index, brn_plan_item *out);
+
+/* Bytes of all items: the most that the run holds at one time, shared coefficients included. */
+BRN_API uint64_t brn_run_memory_bytes(const brn_run *run);
+
+typedef struct brn_progress {
+  size_t struct_size;
+  int32_t step, increment;   /* being solved */
+  int32_t solved, total;     /* increments of the run */
+  int32_t iteration;         /* on the full grid, in this increment */
+  int32_t reserved;
+  double estimate;           /* of the certificate */
+  double seconds;            /* since the increment began */
+} brn_progress;
+
+/* Called on the thread that called brn_run_advance or brn_run_execute, never concurrently. Return 0 to go on; any
+ * other value cancels: the state goes back to the last solved increment. */
+typedef int32_t (*brn_progress_callback)(const brn_progress *progress, void *user);
+
+/* Solves the next increment. BRN_NOT_CONVERGED: its result is kept and marked, and the run may go on.
+ * BRN_WRONG_STATE: there is no further increment. callback may be NULL. */
+BRN_API brn_status brn_run_advance(brn_run *run, brn_progress_callback callback, void *user);
+
+/* Solves all remaining increments; stops at the first that does not end in BRN_OK. */
+BRN_API brn_status brn_run_execute(brn_run *run, brn_progress_callback callback, void *user);
+
+BRN_API int32_t brn_run_total_increments(const brn_run *run);
+BRN_API int32_t brn_run_solved_increments(const brn_run *run);
+
+/* Result of one solved increment. NaN where the scene leaves a quantity out or it does not exist (the centre of
+ * no force). */
+typedef struct brn_increment {
+  size_t struct_size;
+  int32_t step, increment;
+  int32_t converged; /* 0 or 1 */
+  int32_t iterations;   /* on the full grid */
+  int32_t convolutions; /* on the full grid, the certificate's included */
+  int32_t reserved;
+  int64_t contact_nodes;
+  double normal_force;       /* [N] */
+  double approach;           /* [m] */
+  double tilt[2];            /* [rad] */
+  double centre_of_force[2]; /* [m] */
+  double first_touch;        /* smallest undeformed gap [m] */
+  double contact_area;       /* [m^2] */
+  double max_pressure;       /* [Pa] */
+  double max_pressure_at[2]; /* [m] */
+  double mean_gap;           /* of the deformed surfaces, over the grid [m] */
+  /* The certificate, recomputed from the final pressure with a fresh convolution: */
+  double penetration;     /* largest interpenetration / largest displacement */
+  double complementarity; /* sum p*|gap| / (sum p * largest displacement) */
+  double tension;         /* largest tensile / largest compressive pressure */
+  double balance;         /* |force - prescribed force| / prescribed force; 0 if approach is prescribed */
+  double wall_seconds;
+} brn_increment;
+
+BRN_API void brn_increment_init(brn_increment *increment);
+BRN_API brn_status brn_run_get_increment(brn_run *run, int32_t index, brn_increment *out);
+
+/* One point of error against run time. */
+typedef struct brn_trace_point {
+  size_t struct_size;
+  int32_t step, increment;
+  int32_t iteration;
+  int32_t certified; /* 1: recomputed with a fresh convolution; 0: the iteration's own estimate */
+  int64_t nx, ny;    /* grid of the iteration: coarser ones prepare the start */
+  double seconds;    /* since the run began */
+  double certificate;
+} brn_trace_point;
+
+BRN_API int64_t brn_run_trace_count(const brn_run *run);
+BRN_API brn_status brn_run_get_trace_point(brn_run *run, int64_t index, brn_trace_point *out);
+
+/* Seconds spent in a stage of the plan so far; index as in brn_run_stage_name, which returns NULL past the end. */
+BRN_API const char *brn_run_stage_name(const brn_run *run, int32_t index);
+BRN_API double brn_run_stage_seconds(const brn_run *run, int32_t index);
+
+enum {
+  BRN_FIELD_PRESSURE = 1,     /* [Pa] */
+  BRN_FIELD_GAP = 2,          /* of the deformed surfaces [m] */
+  BRN_FIELD_DISPLACEMENT = 3, /* normal, of both bodies together [m] */
+  BRN_FIELD_UNDEFORMED_GAP = 4 /* [m]; known before the first increment */
+};
+
+/* Copies a field of the last solved increment, nx*ny doubles. *count receives the number needed; values may be NULL
+ * if capacity is 0 (that returns BRN_OK: a query of the size). */
+BRN_API brn_status brn_run_get_field(brn_run *run, int32_t field, double *values, size_t capacity, size_t *count);
+
+/* Writes the run's state (all solved increments, and what the next ones start from) to the caller's memory. *size
+ * receives the bytes needed; buffer may be NULL if capacity is 0 (a query of the size). */
+BRN_API brn_status brn_run_save(brn_run *run, void *buffer, size_t capacity, size_t *size);
+
+/* A run that goes on where a saved one stopped, to the same bits. The scene must be the one it was saved from. */
+BRN_API brn_status brn_run_load(brn_engine *engine, const brn_scene *scene, const void *data, size_t size,
+                                brn_run **out);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif /* BRINELL_H */
