@@ -25,8 +25,8 @@
  *     handle yet (brn_last_message).
  *   - A create call sets *out to NULL on failure. Destroying NULL does nothing. No exception, abort or exit crosses
  *     this interface.
- *   - Option structs begin with struct_size. Initialise them with their brn_..._init function: it fills in the size
- *     and the defaults. Members are only ever appended; the engine reads those that struct_size covers and uses the
+ *   - Option structs begin with struct_size. Initialise them with their brn_..._init function, which is
+ *     compiled into the caller and so fills in the caller's size, and the defaults. Members are only ever appended; the engine reads those that struct_size covers and uses the
  *     defaults for the others, and writes only those of a result that struct_size covers.
  *   - The caller owns all arrays; they are borrowed for the duration of the call.
  *   - An engine may be used from several threads at once. A scene or run is used by one thread at a time; a second
@@ -94,7 +94,14 @@ typedef struct brn_engine_options {
   uint64_t cache_limit;  /* bytes of influence coefficients kept for later runs; 0: a quarter of memory_limit */
 } brn_engine_options;
 
-BRN_API void brn_engine_options_init(brn_engine_options *options);
+static inline void brn_engine_options_init(brn_engine_options *value) {
+  value->struct_size = sizeof *value;
+  value->threads = 0;
+  value->isa = 0;
+  value->wisdom = NULL;
+  value->memory_limit = 0;
+  value->cache_limit = 0;
+}
 
 /* options may be NULL: the defaults. */
 BRN_API brn_status brn_engine_create(const brn_engine_options *options, brn_engine **out);
@@ -135,7 +142,15 @@ typedef struct brn_grid {
   int32_t reserved;
 } brn_grid;
 
-BRN_API void brn_grid_init(brn_grid *grid);
+static inline void brn_grid_init(brn_grid *value) {
+  value->struct_size = sizeof *value;
+  value->nx = 0;
+  value->ny = 0;
+  value->dx = 0.0;
+  value->dy = 0.0;
+  value->boundary = 0;
+  value->reserved = 0;
+}
 
 /* Before any surface of heights is added; a scene's grid cannot change once it holds one. */
 BRN_API brn_status brn_scene_set_grid(brn_scene *scene, const brn_grid *grid);
@@ -150,7 +165,13 @@ typedef struct brn_body {
   int32_t reserved;
 } brn_body;
 
-BRN_API void brn_body_init(brn_body *body); /* rigid */
+static inline void brn_body_init(brn_body *value) {
+  value->struct_size = sizeof *value;
+  value->youngs_modulus = 0.0;
+  value->poissons_ratio = 0.0;
+  value->rigid = 1;
+  value->reserved = 0;
+}
 
 /* Both bodies are rigid until set; a run needs at least one that is not. */
 BRN_API brn_status brn_scene_set_body(brn_scene *scene, int32_t which, const brn_body *body);
@@ -179,7 +200,22 @@ typedef struct brn_shape {
   double amplitude, wavelength_x, wavelength_y;
 } brn_shape;
 
-BRN_API void brn_shape_init(brn_shape *shape); /* a plane */
+static inline void brn_shape_init(brn_shape *value) {
+  value->struct_size = sizeof *value;
+  value->kind = BRN_SHAPE_PLANE;
+  value->profile = BRN_PROFILE_PARABOLIC;
+  value->radius = 0.0;
+  value->radius_x = 0.0;
+  value->radius_y = 0.0;
+  value->half_angle = 0.0;
+  value->tip_radius = 0.0;
+  value->edge_radius = 0.0;
+  value->straight_length = 0.0;
+  value->crown_radius = 0.0;
+  value->amplitude = 0.0;
+  value->wavelength_x = 0.0;
+  value->wavelength_y = 0.0;
+}
 
 /* The gap is the sum of all shapes minus all heights. */
 BRN_API brn_status brn_scene_add_shape(brn_scene *scene, const brn_shape *shape);
@@ -198,7 +234,16 @@ typedef struct brn_roughness {
   uint64_t seed;
 } brn_roughness;
 
-BRN_API void brn_roughness_init(brn_roughness *roughness);
+static inline void brn_roughness_init(brn_roughness *value) {
+  value->struct_size = sizeof *value;
+  value->hurst = 0.0;
+  value->rms_slope = 0.0;
+  value->rms_height = 0.0;
+  value->long_cutoff = 0.0;
+  value->rolloff = 0.0;
+  value->short_cutoff = 0.0;
+  value->seed = 0;
+}
 BRN_API brn_status brn_scene_add_roughness(brn_scene *scene, const brn_roughness *roughness);
 
 enum { BRN_DETREND_NONE = 0, BRN_DETREND_MEAN = 1, BRN_DETREND_PLANE = 2 };
@@ -214,7 +259,16 @@ typedef struct brn_heights {
   int32_t reserved;
 } brn_heights;
 
-BRN_API void brn_heights_init(brn_heights *heights);
+static inline void brn_heights_init(brn_heights *value) {
+  value->struct_size = sizeof *value;
+  value->values = NULL;
+  value->nx = 0;
+  value->ny = 0;
+  value->stride_x = 0;
+  value->stride_y = 0;
+  value->detrend = 0;
+  value->reserved = 0;
+}
 
 /* Copies the heights. NaN and infinity are refused with their index. */
 BRN_API brn_status brn_scene_add_heights(brn_scene *scene, const brn_heights *heights);
@@ -227,6 +281,18 @@ typedef struct brn_statistics {
   double sp, sv, sz; /* highest peak, deepest valley, their sum [m] */
   double sdq;      /* root mean square gradient */
 } brn_statistics;
+
+static inline void brn_statistics_init(brn_statistics *value) {
+  value->struct_size = sizeof *value;
+  value->sa = 0.0;
+  value->sq = 0.0;
+  value->ssk = 0.0;
+  value->sku = 0.0;
+  value->sp = 0.0;
+  value->sv = 0.0;
+  value->sz = 0.0;
+  value->sdq = 0.0;
+}
 
 /* Statistics of a caller's heights on spacing dx, dy [m]. */
 BRN_API brn_status brn_height_statistics(const brn_heights *heights, double dx, double dy, brn_statistics *out);
@@ -242,7 +308,12 @@ typedef struct brn_step {
   double target;      /* N >= 0, m, or Pa >= 0 */
 } brn_step;
 
-BRN_API void brn_step_init(brn_step *step); /* one increment, no drive */
+static inline void brn_step_init(brn_step *value) {
+  value->struct_size = sizeof *value;
+  value->drive = 0;
+  value->increments = 1;
+  value->target = 0.0;
+}
 BRN_API brn_status brn_scene_add_step(brn_scene *scene, const brn_step *step);
 
 enum { BRN_PRECISION_DOUBLE = 0, BRN_PRECISION_MIXED = 1 };
@@ -254,7 +325,12 @@ typedef struct brn_solver {
   int32_t precision;      /* BRN_PRECISION_... */
 } brn_solver;
 
-BRN_API void brn_solver_init(brn_solver *solver);
+static inline void brn_solver_init(brn_solver *value) {
+  value->struct_size = sizeof *value;
+  value->tolerance = 1e-8;
+  value->max_iterations = 2000;
+  value->precision = 0;
+}
 BRN_API brn_status brn_scene_set_solver(brn_scene *scene, const brn_solver *solver);
 
 /* ---------------------------------------------------------------- run */
@@ -274,6 +350,13 @@ typedef struct brn_plan_item {
   const char *what;
   uint64_t bytes;
 } brn_plan_item;
+
+static inline void brn_plan_item_init(brn_plan_item *value) {
+  value->struct_size = sizeof *value;
+  value->stage = NULL;
+  value->what = NULL;
+  value->bytes = 0;
+}
 
 BRN_API int32_t brn_run_plan_count(const brn_run *run);
 BRN_API brn_status brn_run_get_plan_item(brn_run *run, int32_t index, brn_plan_item *out);
@@ -332,7 +415,33 @@ typedef struct brn_increment {
   double wall_seconds;
 } brn_increment;
 
-BRN_API void brn_increment_init(brn_increment *increment);
+static inline void brn_increment_init(brn_increment *value) {
+  value->struct_size = sizeof *value;
+  value->step = 0;
+  value->increment = 0;
+  value->converged = 0;
+  value->iterations = 0;
+  value->convolutions = 0;
+  value->reserved = 0;
+  value->contact_nodes = 0;
+  value->normal_force = 0.0;
+  value->approach = 0.0;
+  value->tilt[0] = 0.0;
+  value->tilt[1] = 0.0;
+  value->centre_of_force[0] = 0.0;
+  value->centre_of_force[1] = 0.0;
+  value->first_touch = 0.0;
+  value->contact_area = 0.0;
+  value->max_pressure = 0.0;
+  value->max_pressure_at[0] = 0.0;
+  value->max_pressure_at[1] = 0.0;
+  value->mean_gap = 0.0;
+  value->penetration = 0.0;
+  value->complementarity = 0.0;
+  value->tension = 0.0;
+  value->balance = 0.0;
+  value->wall_seconds = 0.0;
+}
 BRN_API brn_status brn_run_get_increment(brn_run *run, int32_t index, brn_increment *out);
 
 /* One point of error against run time. */
@@ -345,6 +454,18 @@ typedef struct brn_trace_point {
   double seconds;    /* since the run began */
   double certificate;
 } brn_trace_point;
+
+static inline void brn_trace_point_init(brn_trace_point *value) {
+  value->struct_size = sizeof *value;
+  value->step = 0;
+  value->increment = 0;
+  value->iteration = 0;
+  value->certified = 0;
+  value->nx = 0;
+  value->ny = 0;
+  value->seconds = 0.0;
+  value->certificate = 0.0;
+}
 
 BRN_API int64_t brn_run_trace_count(const brn_run *run);
 BRN_API brn_status brn_run_get_trace_point(brn_run *run, int64_t index, brn_trace_point *out);
