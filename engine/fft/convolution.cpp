@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 #include "base/error.h"
 #include "fft/carrier.h"
 #include "fft/fftw_carrier.h"
 #include "fft/kernel_transform.h"
+#include "fft/lane_carrier.h"
 #include "parallel/arena.h"
+#include "simd/kernel_table.h"
 
 namespace brinell::fft {
 
@@ -46,9 +49,19 @@ Convolution<Real>::Convolution(const Backend& backend, std::int64_t nx, std::int
     fail(Status::invalid_argument, "convolution of " + std::to_string(nx) + " x " + std::to_string(ny) +
                                        " nodes: each side must be within 1 .. " + std::to_string(kLargestSide));
   }
-  if (method == Method::lanes) fail(Status::unsupported, "no lane transform for this size");
-  implementation_ = std::make_unique<const Implementation>(
-      Implementation{backend, nx, ny, boundary, fftw_carrier<Real>(backend.plans, nx, ny, boundary)});
+  std::unique_ptr<const Carrier<Real>> carrier;
+  if (method != Method::fftw) {
+    const simd::TransformKernels<Real>& kernels = backend.kernels.template of<Real>().transform;
+    carrier = lane_carrier<Real>(kernels, nx, ny, boundary, method == Method::automatic);
+    if (carrier == nullptr && method == Method::lanes) {
+      fail(Status::unsupported, "the lane transform has no periodic size " + std::to_string(nx) + " x " +
+                                    std::to_string(ny) + ": nx must be " + std::to_string(kernels.lanes) +
+                                    "·2^a·3^b·5^c, ny 2^a·3^b·5^c");
+    }
+  }
+  if (carrier == nullptr) carrier = fftw_carrier<Real>(backend.plans, nx, ny, boundary);
+  implementation_ =
+      std::make_unique<const Implementation>(Implementation{backend, nx, ny, boundary, std::move(carrier)});
 }
 
 template <class Real>
