@@ -15,7 +15,7 @@ simd::GaussRule make_rule(int nodes) {
   simd::GaussRule rule{};
   rule.nodes = nodes;
   const long double n = nodes;
-  for (int k = 0; k < nodes; ++k) {
+  for (int k = 0; k < (nodes + 1) / 2; ++k) {
     // Newton on the Legendre polynomial P_n from the asymptotic place of its roots.
     long double t = -std::cos(std::numbers::pi_v<long double> * (k + 0.75L) / (n + 0.5L));
     long double slope = 0;
@@ -29,8 +29,10 @@ simd::GaussRule make_rule(int nodes) {
       slope = n * (t * value - previous) / (t * t - 1);
       t -= value / slope;
     }
+    if (2 * k + 1 == nodes) t = 0;
     rule.node[k] = static_cast<double>(t);
-    rule.weight[k] = static_cast<double>(2 / ((1 - t * t) * slope * slope));
+    rule.node[nodes - 1 - k] = -rule.node[k];
+    rule.weight[k] = rule.weight[nodes - 1 - k] = static_cast<double>(2 / ((1 - t * t) * slope * slope));
   }
   return rule;
 }

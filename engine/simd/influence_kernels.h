@@ -29,6 +29,17 @@ struct DisplacementSeries {
   double coefficient[kSeriesTerms * (kSeriesTerms + 1) / 2] = {};
 };
 
+/// Stress below a cell |x| <= a, |y| <= b, at one depth z >= 0 of a material with 1 − 2ν = compressibility.
+struct StressCell {
+  double a = 0, b = 0, z = 0;
+  double compressibility = 1;
+};
+
+/// Where the six components xx yy zz yz xz xy of a row go; null: not wanted, not computed.
+struct StressRows {
+  double* component[6] = {};
+};
+
 struct InfluenceKernels {
   /// All six terms of the series, its first four, its first three.
   void (*displacement_series[3])(const DisplacementSeries& series, const RowSpan& span, double* row);
@@ -39,6 +50,12 @@ struct InfluenceKernels {
                                double* row);
   void (*displacement_along_y)(const GaussRule& rule, double a, double b, double scale, const RowSpan& span,
                                double* row);
+
+  /// Stress per unit pressure, shear along x, shear along y: by the corner sums of the closed form, and by product
+  /// quadrature of the point forces.
+  void (*stress_closed[3])(const StressCell& cell, const RowSpan& span, const StressRows& rows);
+  void (*stress_points[3])(const StressCell& cell, const GaussRule& rule_x, const GaussRule& rule_y,
+                           const RowSpan& span, const StressRows& rows);
 };
 
 }  // namespace brinell::simd

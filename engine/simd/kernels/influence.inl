@@ -1,43 +1,11 @@
 #pragma once
 
-#include <cstring>
-
 #include "simd/influence_kernels.h"
+#include "simd/kernels/influence_row.inl"
+#include "simd/kernels/influence_stress.inl"
 
 namespace brinell::simd {
 namespace {
-
-/// Calls body(x) for every register of offsets of the span and stores what it returns; the last, partial register
-/// is computed whole, so that a coefficient does not depend on its place in the register.
-template <class Arch, class Body>
-void fill_row(const RowSpan& span, double* row, Body body) {
-  using Batch = xsimd::batch<double, Arch>;
-  constexpr std::int64_t kLanes = Batch::size;
-  alignas(64) double lanes[kLanes];
-  for (int lane = 0; lane < kLanes; ++lane) lanes[lane] = static_cast<double>(span.first) + lane;
-  Batch index = xsimd::load_aligned<Arch>(lanes);
-  const Batch dx(span.dx), step(static_cast<double>(kLanes));
-  std::int64_t done = 0;
-  for (; done + kLanes <= span.count; done += kLanes, index += step) body(index * dx).store_unaligned(row + done);
-  if (done == span.count) return;
-  body(index * dx).store_aligned(lanes);
-  std::memcpy(row + done, lanes, static_cast<std::size_t>(span.count - done) * sizeof(double));
-}
-
-/// 1/√square. AVX-512's estimate of 14 bits and one step of fourth order, ε = 1 − square·h²,
-/// h (1 + ε/2 + 3ε²/8 + 5ε³/16), take a third of the time of a division and a square root.
-template <class Arch>
-xsimd::batch<double, Arch> inverse_root(xsimd::batch<double, Arch> square) {
-  using Batch = xsimd::batch<double, Arch>;
-#if XSIMD_WITH_AVX512F
-  const Batch estimate = _mm512_rsqrt14_pd(square);
-  const Batch error = Batch(1.0) - square * estimate * estimate;
-  const Batch correction = error * (Batch(0.5) + error * (Batch(0.375) + error * Batch(0.3125)));
-  return estimate + estimate * correction;
-#else
-  return Batch(1.0) / xsimd::sqrt(square);
-#endif
-}
 
 template <class Arch, int Terms>
 void displacement_series(const DisplacementSeries& series, const RowSpan& span, double* row) {
@@ -107,6 +75,10 @@ constexpr InfluenceKernels influence_kernels() {
                               displacement_series<Arch, 3>},
       .displacement_along_x = displacement_along_x<Arch>,
       .displacement_along_y = displacement_along_y<Arch>,
+      .stress_closed = {stress_closed<Arch, PressureStress>, stress_closed<Arch, ShearStress>,
+                        stress_closed<Arch, ShearYStress>},
+      .stress_points = {stress_points<Arch, PressureStress>, stress_points<Arch, ShearStress>,
+                        stress_points<Arch, ShearYStress>},
   };
 }
 
