@@ -6,7 +6,7 @@ over the cell in 25-digit arithmetic: panels are halved until each is small agai
 point, then a 16 x 16 Gauss-Legendre rule; about 18 digits are right. Needs python3-mpmath and a few minutes.
 Usage: stress_reference.py > stress_reference.inl
 """
-from mpmath import legendre, diff, findroot, cos, hypot, mp, mpf, nstr, pi, sqrt
+from mpmath import cos, hypot, mp, mpf, nstr, pi, sqrt
 
 mp.dps = 25
 COUNT = 16
@@ -15,8 +15,14 @@ COUNT = 16
 def rule():
     nodes = []
     for k in range(COUNT):
-        t = findroot(lambda u: legendre(COUNT, u), -cos(pi * (k + mpf(3) / 4) / (COUNT + mpf(1) / 2)))
-        nodes.append((t, 2 / ((1 - t * t) * diff(lambda u: legendre(COUNT, u), t)**2)))
+        t = -cos(pi * (k + mpf(3) / 4) / (COUNT + mpf(1) / 2))
+        for _ in range(8):  # Newton
+            previous, value = mpf(1), t
+            for n in range(2, COUNT + 1):
+                previous, value = value, ((2 * n - 1) * t * value - (n - 1) * previous) / n
+            slope = COUNT * (t * value - previous) / (t * t - 1)
+            t -= value / slope
+        nodes.append((t, 2 / ((1 - t * t) * slope**2)))
     return nodes
 
 
