@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <hdf5.h>
 
 #include <bit>
 #include <cmath>
@@ -10,6 +9,7 @@
 #include <cstring>
 
 #include "errors.h"
+#include "hdf5_handle.h"
 #include "scratch_folder.h"
 
 namespace brinell::cli {
@@ -190,6 +190,7 @@ TEST(Npy, refuses_what_is_no_plain_map) {
 }
 
 std::filesystem::path hdf5_map(const ScratchFolder& folder, const char* unit) {
+  start_hdf5();
   const auto path = folder.path() / "map.h5";
   const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
   const hsize_t shape[] = {2, 3};

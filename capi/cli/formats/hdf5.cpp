@@ -60,7 +60,7 @@ std::string list_maps(hid_t file) {
 }  // namespace
 
 RawMap read_hdf5(const std::filesystem::path& path, const std::string& dataset) {
-  H5Eset_auto(H5E_DEFAULT, nullptr, nullptr);  // failures are told by our own messages
+  start_hdf5();
   const Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (!file) fail_file(path, "cannot be read as an HDF5 file: it is damaged or of another format");
   if (dataset.empty())

@@ -52,7 +52,7 @@ bool write_number_attribute(hid_t object, const char* name, std::span<const doub
 }
 
 Hdf5Handle open_file(const StagedFile& staged, bool keep_existing) {
-  H5Eset_auto(H5E_DEFAULT, nullptr, nullptr);  // failures are told by our own messages
+  start_hdf5();
   errno = 0;
   if (!keep_existing || !std::filesystem::exists(staged.final_path())) {
     return {H5Fcreate(staged.path().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose};
@@ -64,11 +64,11 @@ Hdf5Handle open_file(const StagedFile& staged, bool keep_existing) {
   return {H5Fopen(staged.path().c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose};
 }
 
-/// Names of a group's members, in the order of the names.
-std::vector<std::string> members(hid_t group) {
+/// Names of a group's members, in the order of their creation or of the names.
+std::vector<std::string> members(hid_t group, H5_index_t order) {
   std::vector<std::string> names;
   H5Literate(
-      group, H5_INDEX_NAME, H5_ITER_INC, nullptr,
+      group, order, H5_ITER_INC, nullptr,
       [](hid_t, const char* name, const H5L_info_t*, void* user) -> herr_t {
         static_cast<std::vector<std::string>*>(user)->emplace_back(name);
         return 0;
@@ -104,12 +104,12 @@ FieldsFile::FieldsFile(const std::filesystem::path& folder, FieldsGrid grid, boo
 }
 
 void FieldsFile::recover_increments() {
-  for (const auto& step_name : members(file_.get())) {
+  for (const auto& step_name : members(file_.get(), H5_INDEX_NAME)) {
     const Hdf5Handle step(H5Gopen(file_.get(), step_name.c_str(), H5P_DEFAULT), H5Gclose);
-    for (const auto& name : members(step.get())) {
+    for (const auto& name : members(step.get(), H5_INDEX_NAME)) {
       StoredIncrement increment{number_after(step_name, "step_"), number_after(name, "increment_"), {}};
       const Hdf5Handle group(H5Gopen(step.get(), name.c_str(), H5P_DEFAULT), H5Gclose);
-      for (const auto& field : members(group.get())) {
+      for (const auto& field : members(group.get(), H5_INDEX_CRT_ORDER)) {
         const Hdf5Handle data(H5Dopen(group.get(), field.c_str(), H5P_DEFAULT), H5Dclose);
         const Hdf5Handle space(H5Dget_space(data.get()), H5Sclose);
         const int rank = H5Sget_simple_extent_ndims(space.get());
@@ -129,7 +129,9 @@ void FieldsFile::begin_increment(int step, int increment) {
   const std::string name = "step_" + std::to_string(step) + "/increment_" + std::to_string(increment);
   const Hdf5Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
   H5Pset_create_intermediate_group(links.get(), 1);
-  group_ = Hdf5Handle(H5Gcreate(file_.get(), name.c_str(), links.get(), H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
+  const Hdf5Handle order(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
+  H5Pset_link_creation_order(order.get(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
+  group_ = Hdf5Handle(H5Gcreate(file_.get(), name.c_str(), links.get(), order.get(), H5P_DEFAULT), H5Gclose);
   if (!group_) fail_write();
   increments_.push_back({step, increment, {}});
 }
