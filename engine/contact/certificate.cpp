@@ -14,7 +14,9 @@ struct PressureSums {
 
 }  // namespace
 
-double Certificate::worst() const { return std::max({penetration, complementarity, tension, balance}); }
+double Certificate::worst() const {
+  return std::max({penetration, complementarity, tension, balance});
+}
 
 Certificate certificate_of(const Evidence& evidence, Drive drive, double target) {
   Certificate certificate;

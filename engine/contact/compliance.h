@@ -14,7 +14,9 @@ class Compliance {
   Compliance(const Resources& resources, const Grid& grid, Boundary boundary);
 
   /// result = K · pressure; may be the same array.
-  void apply(const Real* pressure, Real* result) const { convolution_.apply(*spectrum_, pressure, result, *workspace_); }
+  void apply(const Real* pressure, Real* result) const {
+    convolution_.apply(*spectrum_, pressure, result, *workspace_);
+  }
 
   /// Bytes of one on such a grid: its spectrum and its workspace.
   static std::size_t bytes(const fft::Backend& backend, const Grid& grid, Boundary boundary);

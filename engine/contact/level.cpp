@@ -14,11 +14,11 @@ namespace {
 // A node that enters the contact gets this fraction of the mean pressure: in contact, but without effect.
 constexpr double kSeed = 1e-30;
 // Tension is clipped when the displacement that it could cause exceeds this fraction of the present error.
-constexpr double kTensionToError = 0.5;
+constexpr double kTensionToError = 0.2;
 // The preconditioner follows the contact when this fraction of its nodes has changed.
 constexpr double kAdaptAfter = 0.02;
 // Conjugacy is given up when one iteration changes this fraction of the nodes in contact.
-constexpr double kRestartAfter = 0.1;
+constexpr double kRestartAfter = 0.05;
 // Rises of the energy, each after a fresh convolution, until a part of the preconditioner is given up.
 constexpr int kRises = 3;
 // Iterations without a better certificate until the level is given up: round-off has been reached.
@@ -93,7 +93,8 @@ LevelResult Level<Real>::solve(Drive drive, double target, double tolerance, std
   bool preconditioned = true;
   int rises = 0;
   int idle = 0;
-  double changed = 0;
+  double changed = 0;        // nodes that entered or left since the last direction
+  double since_adapted = 0;  // and since the preconditioner was adapted
   double last_energy = std::numeric_limits<double>::infinity();
   double best = std::numeric_limits<double>::infinity();
   double in_contact = sums_.active;
@@ -104,9 +105,8 @@ LevelResult Level<Real>::solve(Drive drive, double target, double tolerance, std
     }
     const double seed = kSeed * std::max(total_ / nodes, std::numeric_limits<double>::min() / kSeed);
     simd::ResidualSums residual = passes_.residual(approach_, seed, state_.p, state_.g, z_.data());
-    const double changes = residual.entered + std::max(0.0, in_contact - sums_.active);
+    changed += residual.entered + std::max(0.0, in_contact - sums_.active);
     in_contact = residual.active;
-    changed += changes;
 
     const Certificate certificate = estimate(residual.complementarity);
     if (!observer({grid_, result.iterations, fresh, certificate.worst()})) {
@@ -125,7 +125,8 @@ LevelResult Level<Real>::solve(Drive drive, double target, double tolerance, std
       if (result.converged || stalled || result.iterations >= max_iterations || in_contact == 0) return result;
     } else {
       const double error = std::max(certificate.penetration, certificate.complementarity);
-      const bool overdue = certificate.tension > kTensionToError * error || error <= tolerance;
+      const bool overdue = certificate.tension > kTensionToError * error || error <= tolerance ||
+                           residual.barred > kTensionToError * error * displacement_;
       if (overdue || result.iterations >= max_iterations) {
         refresh(result);
         fresh = true;
@@ -141,11 +142,12 @@ LevelResult Level<Real>::solve(Drive drive, double target, double tolerance, std
       }
     }
 
-    if (preconditioned && (!adapted || changed > kAdaptAfter * in_contact)) {
+    since_adapted += changed;
+    if (preconditioned && (!adapted || since_adapted > kAdaptAfter * in_contact)) {
       preconditioner_.adapt(passes_, state_.p, z_.data());
       residual = passes_.residual(approach_, seed, state_.p, state_.g, z_.data());
       adapted = true;
-      changed = 0;
+      since_adapted = 0;
     }
     if (preconditioned) preconditioner_.apply(z_.data());
 
@@ -154,13 +156,15 @@ LevelResult Level<Real>::solve(Drive drive, double target, double tolerance, std
     const double mean_v = drive == Drive::force ? sums.v / in_contact : 0;
     const double curvature_before = sums.vq - mean_v * sums.q;
     double beta = 0;
-    if (conjugate && changes <= kRestartAfter * in_contact && curvature_before > 0) {
+    if (conjugate && changed <= kRestartAfter * in_contact && curvature_before > 0) {
       beta = std::max(0.0, (sums.zq - mean_z * sums.q) / curvature_before);
     }
     double slope = passes_.redirect(beta, mean_v, mean_z, approach_, state_.p, state_.g, z_.data(), v_.data());
     if (!(slope < 0) && beta > 0) {
       slope = passes_.redirect(0, 0, mean_z, approach_, state_.p, state_.g, z_.data(), v_.data());
     }
+
+    changed = 0;
 
     double step = 0;
     if (slope < 0) {

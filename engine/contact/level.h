@@ -10,9 +10,9 @@
 //   p += α v, gap += α K v,   α = −r·v / v·K v
 //
 // Nodes with a negative deformed gap enter at once. Nodes whose pressure turns negative leave, but keep that tension
-// until it matters: taking it out changes the displacement everywhere, which costs another convolution. It is clipped,
-// and the displacement recomputed, when it could cause a displacement comparable to the present error, and always
-// before convergence is declared: the certificate that is reported comes from a fresh convolution.
+// until it matters: taking it out changes the displacement everywhere, which costs another convolution. It is
+// clipped, and the displacement recomputed, when it could cause a displacement comparable to the present error, and
+// always before convergence is declared: the certificate that is reported comes from a fresh convolution.
 #pragma once
 
 #include <cstddef>

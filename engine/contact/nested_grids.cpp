@@ -7,8 +7,8 @@ namespace brinell::contact {
 
 namespace {
 
-constexpr std::int64_t kCoarsest = 32;      // nodes of the shorter side below which no coarser grid helps
-constexpr double kWorthwhile = 0.6;         // fraction of the nodes above which a box is not worth its margin
+constexpr std::int64_t kCoarsest = 32;  // nodes of the shorter side below which no coarser grid helps
+constexpr double kWorthwhile = 0.6;     // fraction of the nodes above which a box is not worth its margin
 constexpr std::int64_t kRowsPerTask = 16;
 
 bool can_coarsen(const Grid& grid, Boundary boundary) {
@@ -16,7 +16,9 @@ bool can_coarsen(const Grid& grid, Boundary boundary) {
   return boundary == Boundary::free || (grid.nx % 2 == 0 && grid.ny % 2 == 0);  // a period holds whole cells
 }
 
-Grid coarsen(const Grid& grid) { return {(grid.nx + 1) / 2, (grid.ny + 1) / 2, 2 * grid.dx, 2 * grid.dy}; }
+Grid coarsen(const Grid& grid) {
+  return {(grid.nx + 1) / 2, (grid.ny + 1) / 2, 2 * grid.dx, 2 * grid.dy};
+}
 
 }  // namespace
 

@@ -28,7 +28,9 @@ Sums Passes<Real>::over_blocks(const Combine& combine, const Body& body) {
 
 namespace {
 
-void add(double& total, double part) { total += part; }
+void add(double& total, double part) {
+  total += part;
+}
 
 struct MinGap {
   simd::AdvanceSums sums{0, 0, HUGE_VAL, 0};
@@ -57,6 +59,7 @@ void combine(simd::ResidualSums& total, const simd::ResidualSums& part) {
   total.active += part.active;
   total.entered += part.entered;
   total.complementarity += part.complementarity;
+  total.barred = std::max(total.barred, part.barred);
 }
 
 void combine(simd::DirectionSums& total, const simd::DirectionSums& part) {
@@ -73,11 +76,12 @@ const auto kCombine = [](auto& total, const auto& part) { combine(total, part); 
 
 template <class Real>
 simd::AdvanceSums Passes<Real>::advance(double step, double* p, const Real* v, double* g, const Real* q) {
-  return over_blocks<MinGap>(kCombine, [&](std::int64_t i, std::size_t n, std::size_t) {
-           MinGap part;
-           kernels_.advance(n, step, p + i, v + i, g + i, q + i, &part.sums);
-           return part;
-         })
+  return over_blocks<MinGap>(kCombine,
+                             [&](std::int64_t i, std::size_t n, std::size_t) {
+                               MinGap part;
+                               kernels_.advance(n, step, p + i, v + i, g + i, q + i, &part.sums);
+                               return part;
+                             })
       .sums;
 }
 
@@ -131,11 +135,12 @@ double Passes<Real>::clip(double factor, double* p) {
 
 template <class Real>
 simd::RefreshSums Passes<Real>::refresh(double scale, const double* h, const double* p, double* g) {
-  return over_blocks<Refreshed>(kCombine, [&](std::int64_t i, std::size_t n, std::size_t) {
-           Refreshed part;
-           kernels_.refresh(n, scale, h + i, p + i, g + i, &part.sums);
-           return part;
-         })
+  return over_blocks<Refreshed>(kCombine,
+                                [&](std::int64_t i, std::size_t n, std::size_t) {
+                                  Refreshed part;
+                                  kernels_.refresh(n, scale, h + i, p + i, g + i, &part.sums);
+                                  return part;
+                                })
       .sums;
 }
 

@@ -12,8 +12,8 @@ namespace brinell::contact {
 
 namespace {
 
-constexpr std::int64_t kMostCells = 16;    // per direction: factorising 256 unknowns costs less than one transform
-constexpr std::int64_t kFewestNodes = 8;   // of a cell, per direction
+constexpr std::int64_t kMostCells = 16;   // per direction: factorising 256 unknowns costs less than one transform
+constexpr std::int64_t kFewestNodes = 8;  // of a cell, per direction
 
 std::int64_t cell_size(std::int64_t nodes) {
   const std::int64_t cells = std::clamp<std::int64_t>(nodes / kFewestNodes, 1, kMostCells);

@@ -4,8 +4,8 @@
 //
 //   m(kx, ky) = √( sin²(π kx/nx)/dx² + sin²(π ky/ny)/dy² )  ~  |q|/2,
 //
-// inverts K. The square root of a Laplacian has non-positive off-diagonal coefficients, which |q| sampled on a grid has
-// not; that matters below. What M restricted to a ragged contact misses is the response on scales larger than the
+// inverts K. The square root of a Laplacian has non-positive off-diagonal coefficients, which |q| sampled on a grid
+// has not; that matters below. What M restricted to a ragged contact misses is the response on scales larger than the
 // distance of contact spots: there K is far stiffer than the sum of its spots, and a few large eigenvalues of M K per
 // such mode remain, more on every finer grid. They are taken out on cells of many nodes (B sums over the nodes of a
 // cell): with S the compliance between cells, w = M·1 the conductance of each node in contact, D = Bᵀ w,
@@ -60,11 +60,11 @@ class Preconditioner {
 
   std::int64_t cell_nx_, cell_ny_;  // nodes of a cell
   std::int64_t cells_x_, cells_y_;
-  std::int64_t cells_;                      // 0: local part only
-  Buffer<float> conductance_;               // w, one per node
-  Eigen::MatrixXd compliance_;              // S
-  Eigen::VectorXd inverse_root_;            // D^(-1/2), 0 for cells without contact
-  Eigen::LLT<Eigen::MatrixXd> system_;      // of 1 + D^(1/2) S D^(1/2)
+  std::int64_t cells_;                  // 0: local part only
+  Buffer<float> conductance_;           // w, one per node
+  Eigen::MatrixXd compliance_;          // S
+  Eigen::VectorXd inverse_root_;        // D^(-1/2), 0 for cells without contact
+  Eigen::LLT<Eigen::MatrixXd> system_;  // of 1 + D^(1/2) S D^(1/2)
 };
 
 }  // namespace brinell::contact

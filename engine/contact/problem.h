@@ -25,9 +25,9 @@ struct Resources {
 enum class Drive : std::int32_t { force, approach };
 
 struct Settings {
-  double tolerance = 1e-8;            // on the certificate
+  double tolerance = 1e-8;             // on the certificate
   std::int32_t max_iterations = 2000;  // on the full grid
-  bool mixed_precision = false;       // directions and their displacements in single precision
+  bool mixed_precision = false;        // directions and their displacements in single precision
 };
 
 /// How far a state is from a solution; every entry relative.

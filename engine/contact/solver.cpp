@@ -104,14 +104,14 @@ Solution Solver::solve(Drive drive, double target, double tolerance, std::int32_
     return {true, approach_, 0, {}, 0, 0};
   }
   if (drive == Drive::approach && boundary_ == Boundary::periodic && target >= mean_gap_) {
-    fail(Status::no_equilibrium, "approach = " + text(target) +
-                                     " m cannot be reached on a periodic grid: the mean displacement is zero, so that "
-                                     "full contact is at the mean gap, " +
-                                     text(mean_gap_) + " m; prescribe a smaller approach or a force");
+    fail(Status::no_equilibrium,
+         "approach = " + text(target) +
+             " m cannot be reached on a periodic grid: the mean displacement is zero, so that "
+             "full contact is at the mean gap, " +
+             text(mean_gap_) + " m; prescribe a smaller approach or a force");
   }
-  Solution solution = mixed_precision_
-                          ? solve_nested<float>(drive, target, tolerance, max_iterations, observer)
-                          : solve_nested<double>(drive, target, tolerance, max_iterations, observer);
+  Solution solution = mixed_precision_ ? solve_nested<float>(drive, target, tolerance, max_iterations, observer)
+                                       : solve_nested<double>(drive, target, tolerance, max_iterations, observer);
   total_ = solution.total;
   approach_ = solution.approach;
   return solution;
@@ -123,7 +123,7 @@ Solution Solver::solve_nested(Drive drive, double target, double tolerance, std:
   const parallel::Arena& arena = resources_.backend.arena;
   const double unit_target = drive == Drive::approach ? target * scale_ : target;
   const auto to_solution = [&](const LevelResult& result) {
-    return Solution{result.converged,    result.approach / scale_, result.total,
+    return Solution{result.converged,   result.approach / scale_, result.total,
                     result.certificate, result.iterations,        result.convolutions};
   };
   const Box whole = Box::whole(grid_);
@@ -202,8 +202,8 @@ Solution Solver::solve_nested(Drive drive, double target, double tolerance, std:
 
 std::size_t Solver::bytes(const fft::Backend& backend, const Grid& grid, Boundary boundary, bool mixed_precision) {
   const std::size_t fields = 2 * Buffer<double>::padded_bytes(grid.nodes());
-  const std::size_t level = mixed_precision ? Level<float>::bytes(backend, grid, boundary)
-                                            : Level<double>::bytes(backend, grid, boundary);
+  const std::size_t level =
+      mixed_precision ? Level<float>::bytes(backend, grid, boundary) : Level<double>::bytes(backend, grid, boundary);
   return fields + Compliance<double>::bytes(backend, grid, boundary) + level + coarser_grids_bytes(grid, boundary);
 }
 

@@ -1,4 +1,5 @@
-// Normal contact of two half-spaces: the pressure that carries a prescribed force, or that a prescribed approach makes.
+// Normal contact of two half-spaces: the pressure that carries a prescribed force, or that a prescribed approach
+// makes.
 #pragma once
 
 #include <cstddef>

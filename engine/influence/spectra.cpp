@@ -74,6 +74,7 @@ template std::shared_ptr<const fft::Spectrum<double>> conductance_spectrum(Spect
                                                                            const fft::Convolution<double>&,
                                                                            const Grid&);
 template std::shared_ptr<const fft::Spectrum<float>> conductance_spectrum(SpectrumCache&,
-                                                                          const fft::Convolution<float>&, const Grid&);
+                                                                          const fft::Convolution<float>&,
+                                                                          const Grid&);
 
 }  // namespace brinell::influence

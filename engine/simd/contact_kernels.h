@@ -1,6 +1,6 @@
 // Fused passes of the contact solver over one block of nodes. Pressure p and gap g are double; direction v, its
-// displacement q and the residual z are Real. A node is active, that is in contact, where p > 0; p < 0 is tension that
-// waits to be clipped, p = 0 is out of contact.
+// displacement q and the residual z are Real. A node is active, that is in contact, where p > 0; p < 0 is tension
+// that waits to be clipped, p = 0 is out of contact.
 #pragma once
 
 #include <cstddef>
@@ -8,16 +8,17 @@
 namespace brinell::simd {
 
 struct AdvanceSums {
-  double active = 0;    // number of active nodes
-  double gap = 0;       // Σ g over them
-  double min_gap = 0;   // over the block
-  double tension = 0;   // largest −p, or 0
+  double active = 0;   // number of active nodes
+  double gap = 0;      // Σ g over them
+  double min_gap = 0;  // over the block
+  double tension = 0;  // largest −p, or 0
 };
 
 struct ResidualSums {
   double active = 0;
   double entered = 0;          // nodes that this pass put into contact
   double complementarity = 0;  // Σ |p (g − approach)|
+  double barred = 0;           // largest approach − g of nodes that cannot enter before their tension is clipped
 };
 
 struct DirectionSums {

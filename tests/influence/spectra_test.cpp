@@ -104,9 +104,9 @@ TEST_F(Spectra, periodic_displacement_of_a_wave_is_two_over_its_wave_number) {
 TEST_F(Spectra, mean_of_a_periodic_displacement_is_zero) {
   for (const Grid grid : {Grid{12, 9, 1, 1}, Grid{7, 16, 2e-6, 1e-6}}) {
     const fft::Convolution<double> convolution(backend, grid.nx, grid.ny, Boundary::periodic);
-    const auto displacement = apply(
-        convolution, *displacement_spectrum(cache, backend, convolution, grid, Boundary::periodic),
-        some_pressure<double>(grid));
+    const auto displacement =
+        apply(convolution, *displacement_spectrum(cache, backend, convolution, grid, Boundary::periodic),
+              some_pressure<double>(grid));
     double mean = 0;
     for (const double u : displacement) mean += u;
     EXPECT_NEAR(mean, 0.0, 1e-12 * grid.dx);
@@ -114,7 +114,8 @@ TEST_F(Spectra, mean_of_a_periodic_displacement_is_zero) {
 }
 
 TEST_F(Spectra, conductance_is_the_positive_definite_graph_of_an_m_matrix) {
-  for (const Grid grid : {Grid{12, 9, 1, 1}, Grid{7, 16, 2e-6, 1e-6}, Grid{1, 5, 1, 3}, Grid{8, 1, 1, 1}, Grid{1, 1, 1, 1}}) {
+  for (const Grid grid :
+       {Grid{12, 9, 1, 1}, Grid{7, 16, 2e-6, 1e-6}, Grid{1, 5, 1, 3}, Grid{8, 1, 1, 1}, Grid{1, 1, 1, 1}}) {
     const fft::Convolution<double> convolution(backend, grid.nx, grid.ny, Boundary::periodic);
     std::vector<double> unit(grid.nodes());
     unit[0] = 1;

@@ -30,8 +30,8 @@ struct ContactPasses {
 
   static void residual(std::size_t n, double approach, double seed, double* __restrict p, const double* __restrict g,
                        Real* __restrict z, ResidualSums* sums) {
-    double active = 0, entered = 0, complementarity = 0;
-#pragma omp simd reduction(+ : active, entered, complementarity)
+    double active = 0, entered = 0, complementarity = 0, barred = 0;
+#pragma omp simd reduction(+ : active, entered, complementarity) reduction(max : barred)
     for (std::size_t i = 0; i < n; ++i) {
       const double r = g[i] - approach;
       const double before = p[i];
@@ -41,9 +41,11 @@ struct ContactPasses {
       entered += enters;
       active += pressure > 0 ? 1.0 : 0.0;
       complementarity += std::fabs(pressure * r);
+      const double depth = before < 0 ? -r : 0.0;
+      barred = depth > barred ? depth : barred;
       z[i] = static_cast<Real>(pressure > 0 ? r : 0.0);
     }
-    *sums = {active, entered, complementarity};
+    *sums = {active, entered, complementarity, barred};
   }
 
   static void correlate(std::size_t n, const double* __restrict p, const Real* __restrict z, const Real* __restrict v,
