@@ -30,6 +30,9 @@ std::int64_t cheapest_length(std::int64_t n, const Cost& cost) {
   return best;
 }
 
+/// Fields larger than this do not survive in a shared last-level cache until they are read again.
+constexpr std::size_t kStaysInCache = std::size_t{6} << 20;
+
 /// One of the frequencies in x, and how often it counts (a pair of conjugates is kept once).
 struct Frequency {
   std::int64_t m;
@@ -52,6 +55,7 @@ class ByLanes final : public Carrier<Real> {
     lane_stage();
     // Blocks are set apart so that equal rows of neighbours do not fall into the same cache set.
     rows_.block_stride = ny * 2 * lanes_ + static_cast<std::int64_t>(2 * kAlignment / sizeof(Real));
+    rows_.past_caches = field_size() * sizeof(Real) > kStaysInCache;
     columns_.ny = ny;
     columns_.tree = tree_y_.view();
   }
@@ -62,7 +66,7 @@ class ByLanes final : public Carrier<Real> {
   std::int64_t blocks() const override { return rows_.positions; }
   std::size_t field_size() const override { return static_cast<std::size_t>(rows_.block_stride * blocks()); }
   std::size_t scratch_size() const override {
-    return static_cast<std::size_t>(std::max(4 * rows_.length + 4 * lanes_, 2 * lanes_ * (length_y_ + 1)));
+    return static_cast<std::size_t>(std::max(4 * rows_.length + 4 * lanes_, 2 * lanes_ * length_y_));
   }
   std::size_t spectrum_size() const override { return static_cast<std::size_t>(blocks() * length_y_ * lanes_); }
 
