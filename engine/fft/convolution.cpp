@@ -1,13 +1,20 @@
 #include "fft/convolution.h"
 
+#if defined(__linux__)
+#include <sys/mman.h>
+#endif
+
 #include <algorithm>
 #include <string>
+#include <utility>
 
 #include "base/error.h"
 #include "fft/carrier.h"
 #include "fft/fftw_carrier.h"
 #include "fft/kernel_transform.h"
+#include "fft/lane_carrier.h"
 #include "parallel/arena.h"
+#include "simd/kernel_table.h"
 
 namespace brinell::fft {
 
@@ -18,6 +25,16 @@ constexpr std::int64_t kLargestSide = std::int64_t{1} << 24;  // lengths and pro
 /// Rows of one task: about 32k nodes, so that small grids are one task and large ones many.
 std::int64_t rows_of_a_task(std::int64_t nx) {
   return std::max<std::int64_t>(1, 32768 / nx);
+}
+
+/// Rows are spread over the whole field: with small pages every store would be another page's. A mere wish.
+void prefer_large_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes) {
+#if defined(__linux__)
+  constexpr std::uintptr_t page = 4096;
+  const auto first = (reinterpret_cast<std::uintptr_t>(memory) + page - 1) / page * page;
+  const auto end = (reinterpret_cast<std::uintptr_t>(memory) + bytes) / page * page;
+  if (first < end) madvise(reinterpret_cast<void*>(first), end - first, MADV_HUGEPAGE);
+#endif
 }
 
 }  // namespace
@@ -46,9 +63,19 @@ Convolution<Real>::Convolution(const Backend& backend, std::int64_t nx, std::int
     fail(Status::invalid_argument, "convolution of " + std::to_string(nx) + " x " + std::to_string(ny) +
                                        " nodes: each side must be within 1 .. " + std::to_string(kLargestSide));
   }
-  if (method == Method::lanes) fail(Status::unsupported, "no lane transform for this size");
-  implementation_ = std::make_unique<const Implementation>(
-      Implementation{backend, nx, ny, boundary, fftw_carrier<Real>(backend.plans, nx, ny, boundary)});
+  std::unique_ptr<const Carrier<Real>> carrier;
+  if (method != Method::fftw) {
+    const simd::TransformKernels<Real>& kernels = backend.kernels.template of<Real>().transform;
+    carrier = lane_carrier<Real>(kernels, nx, ny, boundary, method == Method::automatic);
+    if (carrier == nullptr && method == Method::lanes) {
+      fail(Status::unsupported, "the lane transform has no periodic size " + std::to_string(nx) + " x " +
+                                    std::to_string(ny) + ": nx must be " + std::to_string(kernels.lanes) +
+                                    "·2^a·3^b·5^c, ny 2^a·3^b·5^c");
+    }
+  }
+  if (carrier == nullptr) carrier = fftw_carrier<Real>(backend.plans, nx, ny, boundary);
+  implementation_ =
+      std::make_unique<const Implementation>(Implementation{backend, nx, ny, boundary, std::move(carrier)});
 }
 
 template <class Real>
@@ -109,10 +136,13 @@ Spectrum<Real> Convolution<Real>::spectrum_of_symbol(
 template <class Real>
 std::unique_ptr<Workspace<Real>> Convolution<Real>::workspace() const {
   const Implementation& my = *implementation_;
-  const std::size_t scratch_size = my.carrier->scratch_size();
-  const auto threads = static_cast<std::size_t>(my.backend.arena.threads());
-  return std::make_unique<Workspace<Real>>(
-      Workspace<Real>{Buffer<Real>(my.carrier->field_size()), Buffer<Real>(scratch_size * threads), scratch_size});
+  auto workspace = std::make_unique<Workspace<Real>>();
+  workspace->field = Buffer<Real>::uninitialised(my.carrier->field_size());
+  prefer_large_pages(workspace->field.data(), workspace->field.bytes());
+  std::fill(workspace->field.begin(), workspace->field.end(), Real{0});
+  workspace->scratch_size = my.carrier->scratch_size();
+  workspace->scratch = Buffer<Real>(workspace->scratch_size * static_cast<std::size_t>(my.backend.arena.threads()));
+  return workspace;
 }
 
 template <class Real>

@@ -108,6 +108,28 @@ TYPED_TEST(Precision, periodic_convolution_by_fftw_is_the_direct_sum) {
   }
 }
 
+TYPED_TEST(Precision, free_convolution_by_lanes_is_the_direct_sum) {
+  for (const simd::Isa isa : simd::supported()) {
+    for (std::int64_t nx = 1; nx <= 40; nx += 3) {
+      for (std::int64_t ny = 1; ny <= 40; ny += 3) check_free<TypeParam>(nx, ny, Method::lanes, isa);
+    }
+    for (const auto& [nx, ny] : {std::pair{37, 41}, {1, 97}, {97, 1}, {64, 31}, {31, 64}, {128, 25}, {320, 12}}) {
+      check_free<TypeParam>(nx, ny, Method::lanes, isa);
+    }
+  }
+}
+
+TYPED_TEST(Precision, periodic_convolution_by_lanes_is_the_direct_sum) {
+  for (const simd::Isa isa : simd::supported()) {
+    const std::int64_t lanes = simd::kernels(isa).of<TypeParam>().transform.lanes;
+    for (const std::int64_t vectors : {1, 2, 3, 4, 5, 6, 8, 12, 15, 16, 20, 32}) {
+      for (const std::int64_t ny : {1, 2, 3, 4, 5, 6, 8, 9, 10, 12, 15, 16, 18, 20, 24, 25, 32, 40}) {
+        check_periodic<TypeParam>(lanes * vectors, ny, Method::lanes, isa);
+      }
+    }
+  }
+}
+
 TYPED_TEST(Precision, same_bits_for_any_number_of_threads_and_in_place) {
   using Real = TypeParam;
   const oneapi::tbb::global_control eight(oneapi::tbb::global_control::max_allowed_parallelism, 8);
