@@ -97,6 +97,7 @@ class FreeByFftw final : public Carrier<Real> {
     return static_cast<std::size_t>(std::max(2 * row_, (2 * kColumns<Real> + 1) * sequence_));
   }
   std::size_t spectrum_size() const override { return static_cast<std::size_t>(length_x_ * length_y_); }
+  std::size_t transform_size() const override { return static_cast<std::size_t>(length_x_ * 2 * sequence_); }
 
   void arrange(std::int64_t block, FunctionRef<double(std::int64_t, std::int64_t)> value,
                Real* spectrum) const override {
@@ -159,7 +160,44 @@ class FreeByFftw final : public Carrier<Real> {
     }
   }
 
+  void transform_block(std::int64_t block, const Real* field, Real* transform, Real* scratch) const override {
+    const std::int64_t first = blocks_.first(block);
+    const std::int64_t columns = blocks_.last(block) - first;
+    gather(field + block * blocks_.stride, columns, scratch);
+    for (std::int64_t s = 0; s < 2 * columns; ++s) {
+      forward_y_(scratch + s * sequence_, transform + (2 * first + s) * sequence_);
+    }
+  }
+
+  void sum_block(std::int64_t block, std::span<const Term<Real>> terms, Real* field, Real* scratch) const override {
+    const std::int64_t first = blocks_.first(block);
+    const std::int64_t columns = blocks_.last(block) - first;
+    Real* sequences = scratch + sequence_;
+    for (std::int64_t s = 0; s < 2 * columns; ++s) {
+      std::fill(scratch, scratch + 2 * length_y_, Real{0});
+      for (const Term<Real>& term : terms) {
+        const bool turn_x = term.spectrum->parity_x == Parity::odd;
+        const std::int64_t from = turn_x ? s ^ 1 : s;
+        const Real sign = turn_x && s % 2 == 1 ? Real{-1} : Real{1};
+        add_product(term.spectrum->values.data() + (first + s / 2) * length_y_, term.spectrum->parity_y, sign,
+                    term.source->values.data() + (2 * first + from) * sequence_, scratch);
+      }
+      backward_y_(scratch, sequences + s * sequence_);
+    }
+    scatter(sequences, 0, 1, columns, field + block * blocks_.stride);
+  }
+
  private:
+  void add_product(const Real* values, Parity parity_y, Real sign, const Real* sequence, Real* sum) const {
+    for (std::int64_t m = 0; m < length_y_; ++m) {
+      const Real factor = sign * values[m];
+      const Real re = factor * sequence[2 * m];
+      const Real im = factor * sequence[2 * m + 1];
+      sum[2 * m] += parity_y == Parity::even ? re : im;
+      sum[2 * m + 1] += parity_y == Parity::even ? im : -re;
+    }
+  }
+
   void gather(const Real* block, std::int64_t columns, Real* sequences) const {
     for (std::int64_t j = 0; j < ny_; ++j) {
       const Real* row = block + j * Blocks<Real>::kWidth;
@@ -240,6 +278,7 @@ class PeriodicByFftw final : public Carrier<Real> {
     return static_cast<std::size_t>(std::max(2 * row_, (kColumns<Real> + 1) * sequence_));
   }
   std::size_t spectrum_size() const override { return static_cast<std::size_t>(blocks_.columns * half_ny_); }
+  std::size_t transform_size() const override { return static_cast<std::size_t>(blocks_.columns * sequence_); }
 
   void arrange(std::int64_t block, FunctionRef<double(std::int64_t, std::int64_t)> value,
                Real* spectrum) const override {
@@ -272,25 +311,62 @@ class PeriodicByFftw final : public Carrier<Real> {
     const std::int64_t columns = blocks_.last(block) - first;
     Real* const rows = field + block * blocks_.stride;
     Real* const sequences = scratch + sequence_;
-    for (std::int64_t j = 0; j < ny_; ++j) {
-      const Real* row = rows + j * Blocks<Real>::kWidth;
-      Real* place = sequences + 2 * j;
-      for (std::int64_t c = 0; c < columns; ++c, place += sequence_) std::copy_n(row + 2 * c, 2, place);
-    }
+    gather(rows, columns, sequences);
     for (std::int64_t c = 0; c < columns; ++c) {
       Real* sequence = sequences + c * sequence_;
       forward_y_(sequence, scratch);
       multiply(spectrum.values.data() + (first + c) * half_ny_, scratch);
       backward_y_(scratch, sequence);
     }
+    scatter(sequences, columns, rows);
+  }
+
+  void transform_block(std::int64_t block, const Real* field, Real* transform, Real* scratch) const override {
+    const std::int64_t first = blocks_.first(block);
+    const std::int64_t columns = blocks_.last(block) - first;
+    gather(field + block * blocks_.stride, columns, scratch);
+    for (std::int64_t c = 0; c < columns; ++c) {
+      forward_y_(scratch + c * sequence_, transform + (first + c) * sequence_);
+    }
+  }
+
+  void sum_block(std::int64_t block, std::span<const Term<Real>> terms, Real* field, Real* scratch) const override {
+    const std::int64_t first = blocks_.first(block);
+    const std::int64_t columns = blocks_.last(block) - first;
+    Real* const sequences = scratch + sequence_;
+    for (std::int64_t c = 0; c < columns; ++c) {
+      std::fill(scratch, scratch + 2 * ny_, Real{0});
+      for (const Term<Real>& term : terms) {
+        const Real* values = term.spectrum->values.data() + (first + c) * half_ny_;
+        const Real* source = term.source->values.data() + (first + c) * sequence_;
+        for (std::int64_t m = 0; m < ny_; ++m) {
+          const Real value = values[std::min(m, ny_ - m)];
+          scratch[2 * m] += value * source[2 * m];
+          scratch[2 * m + 1] += value * source[2 * m + 1];
+        }
+      }
+      backward_y_(scratch, sequences + c * sequence_);
+    }
+    scatter(sequences, columns, field + block * blocks_.stride);
+  }
+
+ private:
+  void gather(const Real* block, std::int64_t columns, Real* sequences) const {
     for (std::int64_t j = 0; j < ny_; ++j) {
-      Real* row = rows + j * Blocks<Real>::kWidth;
+      const Real* row = block + j * Blocks<Real>::kWidth;
+      Real* place = sequences + 2 * j;
+      for (std::int64_t c = 0; c < columns; ++c, place += sequence_) std::copy_n(row + 2 * c, 2, place);
+    }
+  }
+
+  void scatter(const Real* sequences, std::int64_t columns, Real* block) const {
+    for (std::int64_t j = 0; j < ny_; ++j) {
+      Real* row = block + j * Blocks<Real>::kWidth;
       const Real* place = sequences + 2 * j;
       for (std::int64_t c = 0; c < columns; ++c, place += sequence_) std::copy_n(place, 2, row + 2 * c);
     }
   }
 
- private:
   void multiply(const Real* values, Real* sequence) const {
     for (std::int64_t m = 0; m < half_ny_; ++m) {
       sequence[2 * m] *= values[m];

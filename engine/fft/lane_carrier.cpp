@@ -70,6 +70,8 @@ class ByLanes final : public Carrier<Real> {
   }
   std::size_t spectrum_size() const override { return static_cast<std::size_t>(blocks() * length_y_ * lanes_); }
 
+  std::size_t transform_size() const override { return static_cast<std::size_t>(blocks() * transform_of_block()); }
+
   void arrange(std::int64_t block, FunctionRef<double(std::int64_t, std::int64_t)> value,
                Real* spectrum) const override {
     const bool free = boundary_ == Boundary::free;
@@ -106,7 +108,31 @@ class ByLanes final : public Carrier<Real> {
     }
   }
 
+  void transform_block(std::int64_t block, const Real* field, Real* transform, Real*) const override {
+    const auto forward = boundary_ == Boundary::free ? kernels_.free_forward : kernels_.periodic_forward;
+    forward(columns_, field + block * rows_.block_stride, transform + block * transform_of_block());
+  }
+
+  void sum_block(std::int64_t block, std::span<const Term<Real>> terms, Real* field, Real* scratch) const override {
+    std::vector<simd::BlockTerm<Real>> products;
+    products.reserve(terms.size());
+    for (const Term<Real>& term : terms) {
+      products.push_back({term.source->values.data() + block * transform_of_block(),
+                          term.spectrum->values.data() + block * length_y_ * lanes_,
+                          term.spectrum->parity_x == Parity::odd, term.spectrum->parity_y == Parity::odd});
+    }
+    const auto count = static_cast<std::int64_t>(products.size());
+    Real* place = field + block * rows_.block_stride;
+    if (boundary_ == Boundary::free) {
+      kernels_.free_sum(columns_, products.data(), count, place, scratch);
+    } else {
+      kernels_.periodic_sum(columns_, products.data(), count, place);
+    }
+  }
+
  private:
+  std::int64_t transform_of_block() const { return (boundary_ == Boundary::free ? 2 : 1) * length_y_ * 2 * lanes_; }
+
   void add_piece(std::int64_t length, std::int64_t numerator, std::int64_t denominator) {
     trees_x_.emplace_back(length, numerator, denominator);
     rows_.tree[trees_x_.size() - 1] = trees_x_.back().view();

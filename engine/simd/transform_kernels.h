@@ -70,6 +70,15 @@ struct BlockProduct {
   const Real* next_spectrum;  // may be null
 };
 
+/// One term of a sum of products in one block: a transformed source and the spectrum it is multiplied with.
+template <class Real>
+struct BlockTerm {
+  const Real* transform;  // free: [part: re, im of the field][position][re, im][lane]; periodic: one such part
+  const Real* spectrum;   // [position][lane]
+  bool turn_x;            // as in BlockProduct
+  bool turn_y;
+};
+
 template <class Real>
 struct TransformKernels {
   std::int64_t lanes;
@@ -84,6 +93,15 @@ struct TransformKernels {
   void (*free_block)(const ColumnTransform<Real>& transform, const BlockProduct<Real>& product, Real* field,
                      Real* scratch);
   void (*periodic_block)(const ColumnTransform<Real>& transform, const BlockProduct<Real>& product, Real* field);
+
+  /// The two halves apart: forward from the field to a transform as in BlockTerm; and a sum of products, backward,
+  /// to the field. The same scratch.
+  void (*free_forward)(const ColumnTransform<Real>& transform, const Real* field, Real* transformed);
+  void (*free_sum)(const ColumnTransform<Real>& transform, const BlockTerm<Real>* terms, std::int64_t count,
+                   Real* field, Real* scratch);
+  void (*periodic_forward)(const ColumnTransform<Real>& transform, const Real* field, Real* transformed);
+  void (*periodic_sum)(const ColumnTransform<Real>& transform, const BlockTerm<Real>* terms, std::int64_t count,
+                       Real* field);
 };
 
 }  // namespace brinell::simd

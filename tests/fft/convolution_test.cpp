@@ -130,6 +130,60 @@ TYPED_TEST(Precision, periodic_convolution_by_lanes_is_the_direct_sum) {
   }
 }
 
+/// Two sources, each with two kernels, all four parities: the sum equals the convolutions one by one.
+template <class Real>
+void check_sum(std::int64_t nx, std::int64_t ny, Boundary boundary, Method method, simd::Isa isa) {
+  Case<Real> with(nx, ny, boundary, method, 1, isa);
+  const auto& convolution = with.convolution;
+  const auto workspace = convolution.workspace();
+  std::vector<std::vector<Real>> sources;
+  std::vector<SourceTransform<Real>> transforms;
+  std::vector<Spectrum<Real>> spectra;
+  double allowed = 0;
+  for (unsigned s = 0; s < 2; ++s) {
+    sources.push_back(random_values<Real>(nx * ny, 10 + s));
+    transforms.push_back(convolution.transform(sources.back().data(), *workspace));
+    EXPECT_EQ(transforms.back().values.bytes(), convolution.transform_bytes());
+  }
+  std::vector<Term<Real>> terms;
+  std::vector<Real> expected(nx * ny);
+  spectra.reserve(4);
+  for (const Parity parity_x : kParities) {
+    for (const Parity parity_y : kParities) {
+      const std::size_t s = spectra.size();
+      const auto kernel = random_values<double>(nx * ny, 20 + static_cast<unsigned>(s));
+      if (boundary == Boundary::free) {
+        spectra.push_back(convolution.spectrum(kernel.data(), parity_x, parity_y));
+        allowed += tolerance<Real>(nx * ny, support::norm(sources[s % 2]), 2 * support::norm(kernel));
+      } else {
+        spectra.push_back(convolution.spectrum_of_symbol(
+            [&](std::int64_t kx, std::int64_t ky) { return kernel[ky * (nx / 2 + 1) + kx]; }));
+        allowed += tolerance<Real>(nx * ny, support::norm(sources[s % 2]), 1.0);
+      }
+      terms.push_back({&transforms[s % 2], &spectra[s]});
+      const auto one = with.apply(spectra[s], sources[s % 2]);
+      for (std::size_t i = 0; i < one.size(); ++i) expected[i] += one[i];
+    }
+  }
+  std::vector<Real> result(nx * ny);
+  convolution.apply(terms, result.data(), *workspace);
+  const std::vector<long double> long_expected(expected.begin(), expected.end());
+  EXPECT_LE(support::largest_difference(result, long_expected), allowed) << nx << " x " << ny;
+}
+
+TYPED_TEST(Precision, sums_of_transformed_sources_are_sums_of_convolutions) {
+  for (const Boundary boundary : {Boundary::free, Boundary::periodic}) {
+    for (const auto& [nx, ny] : {std::pair{1, 1}, {1, 7}, {6, 1}, {13, 9}, {64, 48}, {30, 31}}) {
+      check_sum<TypeParam>(nx, ny, boundary, Method::fftw, simd::Isa::baseline);
+    }
+    for (const simd::Isa isa : simd::supported()) {
+      check_sum<TypeParam>(64, 48, boundary, Method::lanes, isa);
+      check_sum<TypeParam>(160, 1, boundary, Method::lanes, isa);
+      if (boundary == Boundary::free) check_sum<TypeParam>(13, 31, boundary, Method::lanes, isa);
+    }
+  }
+}
+
 TYPED_TEST(Precision, same_bits_for_any_number_of_threads_and_in_place) {
   using Real = TypeParam;
   const oneapi::tbb::global_control eight(oneapi::tbb::global_control::max_allowed_parallelism, 8);
@@ -188,6 +242,12 @@ TEST(Convolution, refuses_what_it_cannot_do) {
 
   const auto spectrum = free.convolution.spectrum(kernel.data(), Parity::even, Parity::even);
   Case<double> other(40, 40, Boundary::free);
+  const auto transform = free.convolution.transform(kernel.data(), *free.convolution.workspace());
+  const auto workspace = other.convolution.workspace();
+  std::vector<double> result(1600);
+  const std::vector<Term<double>> terms{{&transform, &spectrum}};
+  EXPECT_THROW(other.convolution.apply(terms, result.data(), *workspace), Error);
+  EXPECT_THROW(other.convolution.apply(std::span<const Term<double>>{}, result.data(), *workspace), Error);
   EXPECT_THROW(other.apply(spectrum, std::vector<double>(1600)), Error);
 }
 
