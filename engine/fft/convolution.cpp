@@ -61,8 +61,10 @@ struct Convolution<Real>::Implementation {
     }
   }
   void check(const Workspace<Real>& workspace) const {
-    if (workspace.field.size() != carrier->field_size() || workspace.scratch_size != carrier->scratch_size()) {
-      fail(Status::invalid_argument, "the workspace was made for a convolution of another size");
+    if (workspace.field.size() != carrier->field_size() || workspace.scratch_size != carrier->scratch_size() ||
+        workspace.scratch.size() < workspace.scratch_size * static_cast<std::size_t>(backend.arena.threads())) {
+      fail(Status::invalid_argument,
+           "the workspace was made for a convolution of another size or another number of threads");
     }
   }
 

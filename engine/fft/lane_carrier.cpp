@@ -11,8 +11,11 @@ namespace brinell::fft {
 
 namespace {
 
-/// Positions after the last whole group of lanes are finished one by one, which costs about this much each.
-constexpr double kRestCost = 8;
+/// Positions after the last whole group of lanes are finished one by one: such a position costs about as much more
+/// as this many whole blocks.
+double cost_of_rest(std::int64_t positions, std::int64_t lanes) {
+  return 0.25 * static_cast<double>(lanes) * static_cast<double>(positions % lanes);
+}
 
 /// The length >= n (in units of `unit`) whose transform costs least; the best is never far above n.
 template <class Cost>
@@ -143,9 +146,20 @@ class ByLanes final : public Carrier<Real> {
     rows_.positions = 0;
     rows_.pieces = 0;
     if (boundary_ == Boundary::free) return add_piece(rows_.length / lanes_, 1, 4);
-    std::int64_t left = rows_.length / lanes_;
-    for (; left % 4 == 0; left /= 2) add_piece(left / 4, 1, 4);
-    add_piece(left, 0, 1);
+    const std::int64_t vectors = rows_.length / lanes_;
+    std::int64_t best = vectors;  // length of the last piece
+    double least = std::numeric_limits<double>::infinity();
+    for (std::int64_t left = vectors;; left /= 2) {
+      const std::int64_t positions = (vectors - left) / 2 + left;
+      const double cost = static_cast<double>(positions) + cost_of_rest(positions, lanes_);
+      if (cost < least) {
+        least = cost;
+        best = left;
+      }
+      if (left % 4 != 0) break;
+    }
+    for (std::int64_t left = vectors; left > best; left /= 2) add_piece(left / 4, 1, 4);
+    add_piece(best, 0, 1);
     rows_.pieces = static_cast<std::int32_t>(trees_x_.size());
   }
 
@@ -223,10 +237,13 @@ std::unique_ptr<const Carrier<Real>> lane_carrier(const simd::TransformKernels<R
     if (nx % lanes != 0 || !is_tree_length(nx / lanes) || !is_tree_length(ny)) return nullptr;
     return std::make_unique<const ByLanes<Real>>(kernels, nx, ny, nx, ny, boundary);
   }
-  const std::int64_t length_x = lanes * cheapest_length((nx + lanes - 1) / lanes, [&](std::int64_t n) {
-                                  return tree_cost(n) + kRestCost * static_cast<double>(n % lanes);
-                                });
   const std::int64_t length_y = cheapest_length(ny, tree_cost);
+  // Each vector of a row costs its part of the row's transform, and of two transforms of its block's columns.
+  const double of_columns = 2 * tree_cost(length_y) / static_cast<double>(length_y);
+  const std::int64_t length_x =
+      lanes * cheapest_length((nx + lanes - 1) / lanes, [&](std::int64_t n) {
+        return tree_cost(n) + of_columns * (static_cast<double>(n) + cost_of_rest(n, lanes));
+      });
   const double nodes = static_cast<double>(length_x) * static_cast<double>(length_y);
   const double nodes_by_fftw = static_cast<double>(good_size(nx)) * static_cast<double>(good_size(ny));
   if (must_pay && nodes > kAdvantage * nodes_by_fftw) return nullptr;

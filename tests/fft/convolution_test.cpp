@@ -130,6 +130,62 @@ TYPED_TEST(Precision, periodic_convolution_by_lanes_is_the_direct_sum) {
   }
 }
 
+/// The two methods are independent of each other; FFTW's is the authority where direct sums take too long.
+template <class Real>
+void check_against_fftw(std::int64_t nx, std::int64_t ny, Boundary boundary, simd::Isa isa) {
+  const auto source = random_values<Real>(nx * ny, 1);
+  const auto kernel = random_values<double>(nx * ny, 2);
+  const auto symbol = [&](std::int64_t kx, std::int64_t ky) { return kernel[ky * (nx / 2 + 1) + kx]; };
+  const auto result = [&](Method method) {
+    Case<Real> with(nx, ny, boundary, method, 1, isa);
+    EXPECT_EQ(with.convolution.method(), method);
+    return with.apply(boundary == Boundary::free ? with.convolution.spectrum(kernel.data(), Parity::odd, Parity::even)
+                                                 : with.convolution.spectrum_of_symbol(symbol),
+                      source);
+  };
+  const auto by_lanes = result(Method::lanes);
+  const auto by_fftw = result(Method::fftw);
+  const std::vector<long double> expected(by_fftw.begin(), by_fftw.end());
+  const double allowed = 2 * tolerance<Real>(nx * ny, support::norm(source),
+                                             boundary == Boundary::free ? 2 * support::norm(kernel) : 1.0);
+  EXPECT_LE(support::largest_difference(by_lanes, expected), allowed)
+      << nx << " x " << ny << " " << simd::name(isa) << (boundary == Boundary::free ? " free" : " periodic");
+}
+
+/// 2^a·{1, 3, 5, 9} from 48 to 4096, and neighbours: long in one direction at a time.
+TYPED_TEST(Precision, lanes_agree_with_fftw_at_good_sizes_and_their_neighbours) {
+  std::vector<std::int64_t> sizes;
+  for (const std::int64_t odd : {1, 3, 5, 9}) {
+    for (std::int64_t size = odd; size <= 4096; size *= 2) {
+      if (size >= 48) sizes.push_back(size);
+    }
+  }
+  for (const simd::Isa isa : simd::supported()) {
+    for (const std::int64_t size : sizes) {
+      for (const std::int64_t near : {size - 1, size, size + 1}) {
+        check_against_fftw<TypeParam>(near, 3, Boundary::free, isa);
+        check_against_fftw<TypeParam>(5, near, Boundary::free, isa);
+      }
+      if (size % 16 == 0) check_against_fftw<TypeParam>(size, 4, Boundary::periodic, isa);
+      check_against_fftw<TypeParam>(16, size, Boundary::periodic, isa);
+    }
+    check_against_fftw<TypeParam>(1024, 768, Boundary::free, isa);
+    check_against_fftw<TypeParam>(1024, 1152, Boundary::periodic, isa);
+  }
+}
+
+TEST(Convolution, chooses_the_lane_transform_where_it_is_faster) {
+  const auto method = [](std::int64_t nx, std::int64_t ny, Boundary boundary) {
+    return Case<double>(nx, ny, boundary, Method::automatic).convolution.method();
+  };
+  EXPECT_EQ(method(512, 512, Boundary::free), Method::lanes);
+  EXPECT_EQ(method(509, 521, Boundary::free), Method::lanes);
+  EXPECT_EQ(method(512, 360, Boundary::periodic), Method::lanes);
+  EXPECT_EQ(method(509, 512, Boundary::periodic), Method::fftw);
+  EXPECT_EQ(method(512, 509, Boundary::periodic), Method::fftw);
+  EXPECT_THROW(Case<double>(509, 512, Boundary::periodic, Method::lanes), Error);
+}
+
 /// Two sources, each with two kernels, all four parities: the sum equals the convolutions one by one.
 template <class Real>
 void check_sum(std::int64_t nx, std::int64_t ny, Boundary boundary, Method method, simd::Isa isa) {
