@@ -45,7 +45,7 @@ TEST(GwyddionText, states_its_size_and_unit_in_utf8_and_latin1) {
     EXPECT_EQ(map.ny, 2);
     EXPECT_DOUBLE_EQ(map.dx, 4e-6);
     EXPECT_DOUBLE_EQ(map.dy, 5e-9);
-    EXPECT_THAT(map.heights, Pointwise(DoubleEq(), {1e-8 * 1e-9, 2e-9, 3e-9, 4e-9, 5e-9, -65 * 1e-9}));
+    EXPECT_THAT(map.heights, Pointwise(DoubleEq(), {1e-8 / 1e9, 2e-9, 3e-9, 4e-9, 5e-9, -65 / 1e9}));
   }
 }
 
