@@ -1,0 +1,40 @@
+# cpack -G DEB: three packages, with the dependencies that dpkg-shlibdeps finds.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME brinell)
+set(CPACK_PACKAGE_VENDOR "The brinell authors")
+set(CPACK_PACKAGE_CONTACT "The brinell authors <brinell@localhost>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
+set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
+set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_COMPONENTS_ALL runtime development)
+if(TARGET brinell_cli)
+  list(APPEND CPACK_COMPONENTS_ALL cli)
+endif()
+
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${CMAKE_CURRENT_BINARY_DIR})  # the command line needs the library
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS_POLICY ">=")
+
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME libbrinell${library_abi})
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_SECTION libs)
+set(CPACK_DEBIAN_RUNTIME_DESCRIPTION "${PROJECT_DESCRIPTION} (library)
+ Presses two bodies together, given their gap, their materials and a history
+ of loads; answers with pressure, contact area, approach and displacement,
+ each with a certificate of its error.")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libbrinell-dev)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libbrinell${library_abi} (= ${PROJECT_VERSION})")
+set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "${PROJECT_DESCRIPTION} (header)
+ The C header, the CMake and pkg-config files and examples.")
+set(CPACK_DEBIAN_CLI_PACKAGE_NAME brinell)
+set(CPACK_DEBIAN_CLI_PACKAGE_DEPENDS "libbrinell${library_abi} (= ${PROJECT_VERSION})")
+set(CPACK_DEBIAN_CLI_DESCRIPTION "${PROJECT_DESCRIPTION} (command line)
+ Solves scenes described in TOML on formulas and measured surfaces; writes
+ HDF5 with an XDMF beside it that ParaView opens.")
+include(CPack)

@@ -1,0 +1,11 @@
+# cmake -DHEADER=… -P: the header needs nothing but <stddef.h> and <stdint.h>, and uses neither bool nor enum types.
+cmake_minimum_required(VERSION 3.25)
+file(READ ${HEADER} text)
+string(REGEX MATCHALL "#include[^\n]*" includes "${text}")
+if(NOT includes STREQUAL "#include <stddef.h>;#include <stdint.h>")
+  message(FATAL_ERROR "brinell.h includes more or less than <stddef.h> and <stdint.h>: ${includes}")
+endif()
+string(REGEX REPLACE "/\\*([^*]|\\*+[^*/])*\\*+/" "" text "${text}")
+if(text MATCHES "[^a-z_](bool|_Bool|enum +[a-z_]+|long|unsigned|short)[^a-z_]")
+  message(FATAL_ERROR "brinell.h uses '${CMAKE_MATCH_1}': members and arguments have fixed widths")
+endif()
