@@ -16,7 +16,7 @@ namespace brinell::cli {
 namespace {
 
 nlohmann::json read_summary(const RunFolder& folder) {
-  const auto summary = nlohmann::json::parse(read_bytes(folder.summary()), nullptr, false);
+  auto summary = nlohmann::json::parse(read_bytes(folder.summary()), nullptr, false);
   if (!summary.is_object() || !summary.contains("increments") || !summary["increments"].is_array()) {
     fail_file(folder.summary(), "is not the summary of a run");
   }

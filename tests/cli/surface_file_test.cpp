@@ -157,7 +157,8 @@ void expect_npy_round_trip(const std::string& type) {
         // Element (j, i) is 10 j + i; columns first in Fortran order.
         const int j = fortran ? k % 2 : k / 3;
         const int i = fortran ? k / 2 : k % 3;
-        data += stored(static_cast<Number>(10 * j + i), big);
+        const int value = 10 * j + i;
+        data += stored(static_cast<Number>(value), big);
       }
       const auto path = folder.write("map.npy", npy((big ? ">" : "<") + type, fortran, "(2, 3)", data, big ? 2 : 1));
       const HeightMap map = read_surface(path);
@@ -191,7 +192,7 @@ TEST(Npy, refuses_what_is_no_plain_map) {
 
 std::filesystem::path hdf5_map(const ScratchFolder& folder, const char* unit) {
   start_hdf5();
-  const auto path = folder.path() / "map.h5";
+  auto path = folder.path() / "map.h5";
   const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
   const hsize_t shape[] = {2, 3};
   const hsize_t two = 2;
