@@ -49,7 +49,11 @@ struct Spectrum {
 
 /// Scratch of one convolution at a time; reused by every following one.
 template <class Real>
-struct Workspace;
+struct Workspace {
+  Buffer<Real> field;            // the transformed rows; layout: private to the Convolution
+  Buffer<Real> scratch;          // one part for each thread
+  std::size_t scratch_size = 0;  // of one part, in Reals
+};
 
 template <class Real>
 class Convolution {
@@ -61,8 +65,8 @@ class Convolution {
   Convolution(const Convolution&) = delete;
   Convolution& operator=(const Convolution&) = delete;
 
-  Method method() const;                // never automatic
-  std::int64_t padded_nx() const;       // length of the cyclic convolution that is carried out
+  Method method() const;           // never automatic
+  std::int64_t padded_nx() const;  // length of the cyclic convolution that is carried out
   std::int64_t padded_ny() const;
   std::size_t spectrum_bytes() const;   // of one Spectrum
   std::size_t workspace_bytes() const;  // of one Workspace

@@ -1,0 +1,142 @@
+// The program `brinell`: arguments, and how every kind of failure becomes a message and an exit status.
+#include <brinell.h>
+
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <functional>
+#include <iostream>
+#include <new>
+
+#include "commands.h"
+#include "errors.h"
+#include "handles.h"
+
+namespace {
+
+using namespace brinell::cli;
+
+int exit_status(brn_status status) {
+  switch (status) {
+    case BRN_INVALID_ARGUMENT:
+    case BRN_INVALID_SCENE:
+    case BRN_UNSUPPORTED:
+    case BRN_NO_EQUILIBRIUM: return kBadScene;
+    case BRN_NOT_CONVERGED: return kNotConverged;
+    case BRN_CANCELLED: return kInterrupted;
+    default: return kFileTrouble;
+  }
+}
+
+int fail(int status, const std::string& message) {
+  std::cout.flush();
+  std::cerr << "brinell: " << message << "\n";
+  return status;
+}
+
+int guarded(const std::function<int()>& command) {
+  try {
+    const int status = command();
+    std::cout.flush();
+    if (!std::cout) return fail(kFileTrouble, "standard output cannot be written");
+    return status;
+  } catch (const SceneError& error) {
+    return fail(kBadScene, error.what());
+  } catch (const FileError& error) {
+    return fail(kFileTrouble, error.what());
+  } catch (const EngineError& error) {
+    return fail(exit_status(error.status()), error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(kFileTrouble, "there is not enough memory");
+  } catch (const std::exception& error) {
+    return fail(kFileTrouble, error.what());
+  }
+}
+
+class Program {
+ public:
+  Program() : app_("Semi-analytical contact mechanics of real surfaces", "brinell") {
+    app_.set_version_flag("--version", std::string("brinell ") + brn_version());
+    app_.require_subcommand(1);
+    app_.failure_message(CLI::FailureMessage::help);
+    app_.footer(
+        "Exit status: 0 solved and certified, 1 not converged, 2 bad usage or scene, 3 file or resource trouble,\n"
+        "130 interrupted (state saved).");
+
+    auto& run = add("run", "Solve a scene and write its results", [this] { return run_command(options_); });
+    add_scene(run);
+    run.add_option("--out", options_.out, "Folder of the results (default: out/ and the scene's name)");
+    add_run_flags(run);
+
+    auto& plan = add("plan", "Print what a scene needs, before anything is solved",
+                     [this] { return plan_command(options_.scene, options_.json); });
+    add_scene(plan);
+    plan.add_flag("--json", options_.json, "Print JSON");
+
+    add_scene(add("check", "Check a scene and the files it names", [this] { return check_command(options_.scene); }));
+
+    auto& resume = add("resume", "Go on with an interrupted run", [this] { return resume_command(options_); });
+    resume.add_option("DIR", options_.out, "Folder of the run")->required();
+    add_run_flags(resume);
+
+    auto& report = add("report", "Draw a run's trace and pressure as SVG and PNG",
+                       [this] { return report_command(options_.out); });
+    report.add_option("DIR", options_.out, "Folder of the run")->required();
+
+    auto& bench = add("bench", "Time scenes",
+                      [this] { return bench_command(paths_, rounds_, options_.threads.value_or(0), options_.json); });
+    bench.add_option("PROFILE", paths_, "Scene files or folders (default: those in profiles/)");
+    bench.add_option("--rounds", rounds_, "Runs of each scene")->check(CLI::Range(1, 1000))->capture_default_str();
+    add_threads(bench);
+    bench.add_flag("--json", options_.json, "Print JSON");
+
+    auto& info = add("info", "Print version, instruction set and threads, or the statistics of height maps",
+                     [this] { return info_command(paths_, options_.json); });
+    info.add_option("SURFACE", paths_, "Height maps");
+    info.add_flag("--json", options_.json, "Print JSON");
+  }
+
+  int run(int count, char** arguments) {
+    try {
+      app_.parse(count, arguments);
+    } catch (const CLI::ParseError& error) {
+      return app_.exit(error, std::cout, std::cerr) == 0 ? kSolved : kBadScene;
+    }
+    return guarded(command_);
+  }
+
+ private:
+  CLI::App& add(const std::string& name, const std::string& text, std::function<int()> command) {
+    CLI::App& sub = *app_.add_subcommand(name, text);
+    sub.set_version_flag("--version", std::string("brinell ") + brn_version());
+    sub.callback([this, command = std::move(command)] { command_ = command; });
+    return sub;
+  }
+
+  void add_scene(CLI::App& sub) {
+    sub.add_option("SCENE", options_.scene, "TOML file, or a folder that holds scene.toml")->required();
+  }
+
+  void add_run_flags(CLI::App& sub) {
+    sub.add_flag("--json", options_.json, "Print summary.json");
+    add_threads(sub);
+    sub.add_flag("--quiet", options_.quiet, "No progress and no table");
+  }
+
+  void add_threads(CLI::App& sub) {
+    sub.add_option("--threads", options_.threads, "At most so many threads; 0: all that the process may use")
+        ->check(CLI::Range(0, 1024));
+  }
+
+  CLI::App app_;
+  RunOptions options_;
+  std::vector<std::filesystem::path> paths_;
+  int rounds_ = 6;
+  std::function<int()> command_;
+};
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is then an error of the write like a full disk
+  return Program().run(count, arguments);
+}

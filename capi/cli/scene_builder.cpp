@@ -1,0 +1,239 @@
+#include "scene_builder.h"
+
+#include <cmath>
+#include <optional>
+
+#include "errors.h"
+#include "formats/formats.h"
+#include "surface_file.h"
+
+namespace brinell::cli {
+
+namespace {
+
+struct ShapeKind {
+  const char* name;
+  int kind;
+};
+
+constexpr ShapeKind kShapeKinds[] = {
+    {"plane", BRN_SHAPE_PLANE},       {"sphere", BRN_SHAPE_SPHERE},         {"ellipsoid", BRN_SHAPE_ELLIPSOID},
+    {"cone", BRN_SHAPE_CONE},         {"flat_punch", BRN_SHAPE_FLAT_PUNCH}, {"roller", BRN_SHAPE_ROLLER},
+    {"sinusoid", BRN_SHAPE_SINUSOID},
+};
+
+template <class Struct>
+struct NumberMember {
+  const char* key;
+  double Struct::*member;
+};
+
+constexpr NumberMember<brn_shape> kShapeNumbers[] = {
+    {"radius", &brn_shape::radius},
+    {"radius_x", &brn_shape::radius_x},
+    {"radius_y", &brn_shape::radius_y},
+    {"half_angle", &brn_shape::half_angle},
+    {"tip_radius", &brn_shape::tip_radius},
+    {"edge_radius", &brn_shape::edge_radius},
+    {"straight_length", &brn_shape::straight_length},
+    {"crown_radius", &brn_shape::crown_radius},
+    {"amplitude", &brn_shape::amplitude},
+};
+
+constexpr NumberMember<brn_roughness> kRoughNumbers[] = {
+    {"hurst", &brn_roughness::hurst},           {"rms_slope", &brn_roughness::rms_slope},
+    {"rms_height", &brn_roughness::rms_height}, {"long_cutoff", &brn_roughness::long_cutoff},
+    {"rolloff", &brn_roughness::rolloff},       {"short_cutoff", &brn_roughness::short_cutoff},
+};
+
+template <class Struct, std::size_t size>
+void fill_in(Struct& target, const std::map<std::string, double>& numbers,
+             const NumberMember<Struct> (&members)[size]) {
+  for (const auto& [key, member] : members) {
+    const auto found = numbers.find(key);
+    if (found != numbers.end()) target.*member = found->second;
+  }
+}
+
+class Builder {
+ public:
+  explicit Builder(const SceneFile& file) : file_(file) {
+    brn_scene* scene = nullptr;
+    check(brn_scene_create(&scene));
+    scene_.reset(scene);
+  }
+
+  BuiltScene build() {
+    refuse_unsupported();
+    read_height_maps();
+    const brn_grid grid = set_grid();
+    set_body(BRN_LOWER, file_.lower);
+    set_body(BRN_UPPER, file_.upper.same_as_lower ? file_.lower : file_.upper);
+    for (std::size_t k = 0; k < file_.surfaces.size(); ++k) add_surface(file_.surfaces[k], k, grid);
+    for (const auto& step : file_.steps) add_step(step);
+    brn_solver solver;
+    brn_solver_init(&solver);
+    solver.tolerance = file_.solver.tolerance;
+    solver.max_iterations = file_.solver.max_iterations;
+    solver.precision = file_.solver.mixed ? BRN_PRECISION_MIXED : BRN_PRECISION_DOUBLE;
+    accept(brn_scene_set_solver(scene_.get(), &solver), file_.solver.line, "[solver]");
+    return {std::move(scene_), grid};
+  }
+
+ private:
+  [[noreturn]] void fail(int line, const std::string& text) const {
+    throw SceneError(file_.place(line == 0 ? 1 : line) + text);
+  }
+
+  /// What the engine refuses is told with the part's place in the file; lack of memory is no fault of the scene.
+  void accept(brn_status status, int line, const std::string& part) const {
+    if (status == BRN_OK) return;
+    const std::string message = brn_scene_message(scene_.get());
+    if (status != BRN_INVALID_ARGUMENT && status != BRN_INVALID_SCENE) throw EngineError(status, message);
+    fail(line, part + ": " + message);
+  }
+
+  void refuse_unsupported() const {
+    const std::string release = std::string(" is not supported by brinell ") + brn_version();
+    if (file_.lower.hardening) fail(file_.lower.hardening->line, "[lower.hardening]" + release);
+    if (file_.upper.hardening) fail(file_.upper.hardening->line, "[upper.hardening]" + release);
+    for (const auto& step : file_.steps) {
+      if (step.eccentricity) fail(step.line, "[[step]]: eccentricity" + release);
+      if (step.tilt) fail(step.line, "[[step]]: tilt" + release);
+      if (step.offset) fail(step.line, "[[step]]: offset" + release);
+      if (step.traction_ratio) fail(step.line, "[[step]]: traction_ratio" + release);
+    }
+    for (const auto& field : file_.output.fields) {
+      if (field_info(field).id == 0) fail(file_.output.line, "[output]: the field " + field + release);
+    }
+  }
+
+  void read_height_maps() {
+    maps_.resize(file_.surfaces.size());
+    for (std::size_t k = 0; k < maps_.size(); ++k) {
+      const SurfacePart& part = file_.surfaces[k];
+      if (part.shape == "file") maps_[k] = read_surface(part.path, {part.units, part.dataset, part.fill_missing});
+    }
+  }
+
+  brn_grid set_grid() const {
+    brn_grid grid;
+    brn_grid_init(&grid);
+    grid.boundary = file_.grid.periodic ? BRN_BOUNDARY_PERIODIC : BRN_BOUNDARY_FREE;
+    for (const auto& map : maps_) {
+      if (map && grid.nx == 0) {
+        grid.nx = map->nx;
+        grid.ny = map->ny;
+      }
+      if (map && grid.dx == 0 && map->dx > 0 && map->dy > 0) {
+        grid.dx = map->dx;
+        grid.dy = map->dy;
+      }
+    }
+    if (file_.grid.nodes) {
+      grid.nx = (*file_.grid.nodes)[0];
+      grid.ny = (*file_.grid.nodes)[1];
+    }
+    if (file_.grid.spacing) {
+      grid.dx = (*file_.grid.spacing)[0];
+      grid.dy = (*file_.grid.spacing)[1];
+    }
+    if (grid.nx == 0)
+      fail(file_.grid.line, "[grid]: the key nodes is missing, and there is no surface file that says it");
+    if (grid.dx == 0)
+      fail(file_.grid.line, "[grid]: the key spacing is missing, and there is no surface file that says it");
+    accept(brn_scene_set_grid(scene_.get(), &grid), file_.grid.line, "[grid]");
+    return grid;
+  }
+
+  void set_body(int which, const BodyPart& part) const {
+    brn_body body;
+    brn_body_init(&body);
+    body.rigid = part.rigid ? 1 : 0;
+    body.youngs_modulus = part.youngs_modulus;
+    body.poissons_ratio = part.poissons_ratio;
+    accept(brn_scene_set_body(scene_.get(), which, &body), part.line, which == BRN_LOWER ? "[lower]" : "[upper]");
+  }
+
+  void add_surface(const SurfacePart& part, std::size_t index, const brn_grid& grid) {
+    const std::string label = "[[surface]] " + std::to_string(index + 1);
+    if (part.shape == "file") {
+      require_fit(part, *maps_[index], grid, label);
+      brn_heights heights;
+      brn_heights_init(&heights);
+      heights.values = maps_[index]->heights.data();
+      heights.nx = maps_[index]->nx;
+      heights.ny = maps_[index]->ny;
+      heights.detrend = part.detrend == "plane"  ? BRN_DETREND_PLANE
+                        : part.detrend == "mean" ? BRN_DETREND_MEAN
+                                                 : BRN_DETREND_NONE;
+      accept(brn_scene_add_heights(scene_.get(), &heights), part.line, label);
+      maps_[index].reset();
+    } else if (part.shape == "rough") {
+      brn_roughness roughness;
+      brn_roughness_init(&roughness);
+      fill_in(roughness, part.numbers, kRoughNumbers);
+      roughness.seed = part.seed;
+      accept(brn_scene_add_roughness(scene_.get(), &roughness), part.line, label);
+    } else {
+      brn_shape shape;
+      brn_shape_init(&shape);
+      for (const auto& [name, kind] : kShapeKinds) {
+        if (part.shape == name) shape.kind = kind;
+      }
+      shape.profile = part.exact ? BRN_PROFILE_EXACT : BRN_PROFILE_PARABOLIC;
+      fill_in(shape, part.numbers, kShapeNumbers);
+      shape.wavelength_x = part.wavelength[0];
+      shape.wavelength_y = part.wavelength[1];
+      accept(brn_scene_add_shape(scene_.get(), &shape), part.line, label);
+    }
+  }
+
+  /// Headers round a size to three or four digits, so that the spacing need only agree to a thousandth.
+  void require_fit(const SurfacePart& part, const HeightMap& map, const brn_grid& grid,
+                   const std::string& label) const {
+    if (map.nx != grid.nx || map.ny != grid.ny) {
+      fail(part.line, label + ": " + part.path.string() + " holds " + std::to_string(map.nx) + " x " +
+                          std::to_string(map.ny) + " heights, the grid has " + std::to_string(grid.nx) + " x " +
+                          std::to_string(grid.ny) + " nodes; expected the same");
+    }
+    const auto differs = [](double from_file, double from_grid) {
+      return !std::isnan(from_file) && std::abs(from_file - from_grid) > 1e-3 * from_grid;
+    };
+    if (differs(map.dx, grid.dx) || differs(map.dy, grid.dy)) {
+      fail(part.line, label + ": " + part.path.string() + " says that its spacing is " + number_text(map.dx) + " x " +
+                          number_text(map.dy) + " m, the grid's is " + number_text(grid.dx) + " x " +
+                          number_text(grid.dy) + " m; expected the same within 0.1 %");
+    }
+  }
+
+  void add_step(const StepPart& part) const {
+    brn_step step;
+    brn_step_init(&step);
+    step.increments = part.increments;
+    step.drive = part.normal_force ? BRN_DRIVE_FORCE : part.approach ? BRN_DRIVE_APPROACH : BRN_DRIVE_MEAN_PRESSURE;
+    step.target = part.normal_force ? *part.normal_force : part.approach ? *part.approach : *part.mean_pressure;
+    accept(brn_scene_add_step(scene_.get(), &step), part.line,
+           "[[step]] " + std::to_string(&part - file_.steps.data() + 1));
+  }
+
+  const SceneFile& file_;
+  Scene scene_;
+  std::vector<std::optional<HeightMap>> maps_;  ///< one for each surface
+};
+
+}  // namespace
+
+BuiltScene build_scene(const SceneFile& file) {
+  return Builder(file).build();
+}
+
+FieldInfo field_info(const std::string& name) {
+  if (name == "pressure") return {BRN_FIELD_PRESSURE, "Pa"};
+  if (name == "gap") return {BRN_FIELD_GAP, "m"};
+  if (name == "displacement") return {BRN_FIELD_DISPLACEMENT, "m"};
+  if (name == "undeformed_gap") return {BRN_FIELD_UNDEFORMED_GAP, "m"};
+  return {0, ""};
+}
+
+}  // namespace brinell::cli

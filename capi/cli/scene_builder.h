@@ -1,0 +1,25 @@
+// From a scene file to a scene of the engine: reads the height maps and hands everything over.
+#pragma once
+
+#include "handles.h"
+#include "scene_file.h"
+
+namespace brinell::cli {
+
+struct BuiltScene {
+  Scene scene;
+  brn_grid grid;
+};
+
+/// Throws FileError for a height map that cannot be read, and SceneError with the line of the part that the engine
+/// refuses or that does not fit.
+BuiltScene build_scene(const SceneFile& file);
+
+/// Identifier of a field of [output], BRN_FIELD_..., its unit; 0 if this release does not compute it.
+struct FieldInfo {
+  int id;
+  const char* unit;
+};
+FieldInfo field_info(const std::string& name);
+
+}  // namespace brinell::cli

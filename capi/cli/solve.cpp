@@ -1,0 +1,148 @@
+#include "solve.h"
+
+#include <chrono>
+#include <cmath>
+#include <iostream>
+
+#include "interrupt.h"
+#include "output/fields_file.h"
+#include "output/staged_file.h"
+#include "output/summary.h"
+#include "progress.h"
+
+namespace brinell::cli {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr auto kCheckpointInterval = std::chrono::seconds(30);
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+class Solve {
+ public:
+  Solve(const RunParts& parts, const RunOptions& options)
+      : parts_(parts),
+        options_(options),
+        earlier_seconds_(parts.resumed ? parts.folder.earlier_seconds() : 0.0),
+        progress_(options.quiet) {
+    const auto& output = parts.file.output;
+    if (output.fields.empty()) return;
+    const bool keeps_earlier = parts.resumed && output.increments != StoredIncrements::last;
+    fields_.emplace(parts.folder.path(), FieldsGrid{parts.grid.nx, parts.grid.ny, parts.grid.dx, parts.grid.dy, {}},
+                    keeps_earlier);
+  }
+
+  int solve() {
+    const brn_status status = advance_to_end();
+    progress_.clear();
+    const bool is_failure = status != BRN_OK && status != BRN_NOT_CONVERGED && status != BRN_CANCELLED;
+    const std::string message = status == BRN_OK ? "" : brn_run_message(parts_.run);
+    if (!is_failure || solved() > 0) write_results(status);
+    if (is_failure) throw EngineError(status, message);
+    return report(status, message);
+  }
+
+ private:
+  int solved() const { return brn_run_solved_increments(parts_.run); }
+  int total() const { return brn_run_total_increments(parts_.run); }
+
+  brn_status advance_to_end() {
+    while (solved() < total()) {
+      if (interrupted()) return BRN_CANCELLED;
+      const brn_status status = brn_run_advance(parts_.run, follow_progress, &progress_);
+      if (status != BRN_OK && status != BRN_NOT_CONVERGED) return status;
+      store_if_wanted();
+      if (status != BRN_OK) return status;
+      if (Clock::now() - saved_at_ > kCheckpointInterval && solved() < total()) save_checkpoint();
+    }
+    return BRN_OK;
+  }
+
+  void store_if_wanted() {
+    const auto wanted = parts_.file.output.increments;
+    const brn_increment increment = increment_of(parts_.run, solved() - 1);
+    const bool ends_step = increment.increment + 1 == parts_.file.steps[increment.step].increments;
+    if (wanted == StoredIncrements::all || (wanted == StoredIncrements::steps && ends_step)) store(increment);
+  }
+
+  void store(const brn_increment& increment) {
+    if (!fields_) return;
+    fields_->begin_increment(increment.step, increment.increment);
+    std::vector<double> values(static_cast<std::size_t>(parts_.grid.nx * parts_.grid.ny));
+    for (const auto& name : parts_.file.output.fields) {
+      const FieldInfo info = field_info(name);
+      std::size_t count = 0;
+      check(brn_run_get_field(parts_.run, info.id, values.data(), values.size(), &count), parts_.run);
+      fields_->add({name}, info.unit, values);
+    }
+  }
+
+  void save_checkpoint() {
+    write_file(parts_.folder.checkpoint(), save_run(parts_.run));
+    saved_at_ = Clock::now();
+  }
+
+  void write_results(brn_status status) {
+    if (fields_) {
+      if (parts_.file.output.increments == StoredIncrements::last && solved() > 0) {
+        store(increment_of(parts_.run, solved() - 1));
+      }
+      fields_->publish();
+    }
+    write_file(parts_.folder.trace(), trace_csv(parts_.run));
+    save_checkpoint();
+    summary_ = summary_json(parts_.file, parts_.engine, parts_.run, status == BRN_CANCELLED,
+                            earlier_seconds_ + seconds_since(started_))
+                   .dump(2) +
+               "\n";
+    write_file(parts_.folder.summary(), summary_);
+  }
+
+  int report(brn_status status, const std::string& message) const {
+    if (options_.json) {
+      std::cout << summary_;
+    } else if (!options_.quiet) {
+      std::cout << summary_table(parts_.run) << "results in " << parts_.folder.path().string() << "\n";
+    }
+    const std::string count = std::to_string(solved()) + " of " + std::to_string(total()) + " increments solved";
+    if (status == BRN_CANCELLED) {
+      std::cerr << "brinell: interrupted, " << count << "; go on with: brinell resume "
+                << parts_.folder.path().string() << "\n";
+      return kInterrupted;
+    }
+    if (status == BRN_NOT_CONVERGED) {
+      std::cerr << "brinell: not converged, " << count << ": " << message << "\n";
+      return kNotConverged;
+    }
+    return all_converged() ? kSolved : kNotConverged;
+  }
+
+  /// A resumed run may hold an increment that did not converge before.
+  bool all_converged() const {
+    for (int k = 0; k < solved(); ++k) {
+      if (increment_of(parts_.run, k).converged == 0) return false;
+    }
+    return true;
+  }
+
+  const RunParts& parts_;
+  const RunOptions& options_;
+  double earlier_seconds_;
+  ProgressLine progress_;
+  std::optional<FieldsFile> fields_;
+  std::string summary_;
+  Clock::time_point started_ = Clock::now();
+  Clock::time_point saved_at_ = started_;
+};
+
+}  // namespace
+
+int solve(const RunParts& parts, const RunOptions& options) {
+  return Solve(parts, options).solve();
+}
+
+}  // namespace brinell::cli

@@ -1,0 +1,162 @@
+#include "fft/convolution.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "base/error.h"
+#include "fft/carrier.h"
+#include "fft/fftw_carrier.h"
+#include "fft/kernel_transform.h"
+#include "fft/lane_carrier.h"
+#include "parallel/arena.h"
+#include "simd/kernel_table.h"
+
+namespace brinell::fft {
+
+namespace {
+
+constexpr std::int64_t kLargestSide = std::int64_t{1} << 24;  // lengths and products stay far from overflow
+
+/// Rows of one task: about 32k nodes, so that small grids are one task and large ones many.
+std::int64_t rows_of_a_task(std::int64_t nx) {
+  return std::max<std::int64_t>(1, 32768 / nx);
+}
+
+}  // namespace
+
+template <class Real>
+struct Convolution<Real>::Implementation {
+  Backend backend;
+  std::int64_t nx, ny;
+  Boundary boundary;
+  std::unique_ptr<const Carrier<Real>> carrier;
+
+  Spectrum<Real> arranged(Parity parity_x, Parity parity_y,
+                          FunctionRef<double(std::int64_t, std::int64_t)> value) const {
+    Spectrum<Real> spectrum{Buffer<Real>(carrier->spectrum_size()), parity_x, parity_y};
+    backend.arena.for_chunks(carrier->blocks(), 1, [&](std::int64_t begin, std::int64_t end, int) {
+      for (std::int64_t block = begin; block < end; ++block) carrier->arrange(block, value, spectrum.values.data());
+    });
+    return spectrum;
+  }
+};
+
+template <class Real>
+Convolution<Real>::Convolution(const Backend& backend, std::int64_t nx, std::int64_t ny, Boundary boundary,
+                               Method method) {
+  if (nx < 1 || ny < 1 || nx > kLargestSide || ny > kLargestSide) {
+    fail(Status::invalid_argument, "convolution of " + std::to_string(nx) + " x " + std::to_string(ny) +
+                                       " nodes: each side must be within 1 .. " + std::to_string(kLargestSide));
+  }
+  std::unique_ptr<const Carrier<Real>> carrier;
+  if (method != Method::fftw) {
+    const simd::TransformKernels<Real>& kernels = backend.kernels.template of<Real>().transform;
+    carrier = lane_carrier<Real>(kernels, nx, ny, boundary, method == Method::automatic);
+    if (carrier == nullptr && method == Method::lanes) {
+      fail(Status::unsupported, "the lane transform has no periodic size " + std::to_string(nx) + " x " +
+                                    std::to_string(ny) + ": nx must be " + std::to_string(kernels.lanes) +
+                                    "·2^a·3^b·5^c, ny 2^a·3^b·5^c");
+    }
+  }
+  if (carrier == nullptr) carrier = fftw_carrier<Real>(backend.plans, nx, ny, boundary);
+  implementation_ =
+      std::make_unique<const Implementation>(Implementation{backend, nx, ny, boundary, std::move(carrier)});
+}
+
+template <class Real>
+Convolution<Real>::~Convolution() = default;
+
+template <class Real>
+Method Convolution<Real>::method() const {
+  return implementation_->carrier->method();
+}
+
+template <class Real>
+std::int64_t Convolution<Real>::padded_nx() const {
+  return implementation_->carrier->padded_nx();
+}
+
+template <class Real>
+std::int64_t Convolution<Real>::padded_ny() const {
+  return implementation_->carrier->padded_ny();
+}
+
+template <class Real>
+std::size_t Convolution<Real>::spectrum_bytes() const {
+  return Buffer<Real>::padded_bytes(implementation_->carrier->spectrum_size());
+}
+
+template <class Real>
+std::size_t Convolution<Real>::workspace_bytes() const {
+  const Implementation& my = *implementation_;
+  const auto threads = static_cast<std::size_t>(my.backend.arena.threads());
+  return Buffer<Real>::padded_bytes(my.carrier->field_size()) +
+         Buffer<Real>::padded_bytes(my.carrier->scratch_size() * threads);
+}
+
+template <class Real>
+Spectrum<Real> Convolution<Real>::spectrum(const double* kernel, Parity parity_x, Parity parity_y) const {
+  const Implementation& my = *implementation_;
+  if (my.boundary != Boundary::free) {
+    fail(Status::wrong_state, "a kernel in space is for a free boundary; this convolution is periodic");
+  }
+  const KernelTransform transform(my.backend, kernel, my.nx, my.ny, my.carrier->padded_nx() / 2,
+                                  my.carrier->padded_ny() / 2, parity_x, parity_y);
+  return my.arranged(parity_x, parity_y, transform);
+}
+
+template <class Real>
+Spectrum<Real> Convolution<Real>::spectrum_of_symbol(
+    FunctionRef<double(std::int64_t kx, std::int64_t ky)> symbol) const {
+  const Implementation& my = *implementation_;
+  if (my.boundary != Boundary::periodic) {
+    fail(Status::wrong_state, "a symbol is for a periodic boundary; this convolution is free");
+  }
+  const double scale = 1.0 / (static_cast<double>(my.nx) * static_cast<double>(my.ny));
+  return my.arranged(Parity::even, Parity::even, [&](std::int64_t mx, std::int64_t my_) {
+    return scale * symbol(std::min(mx, my.nx - mx), std::min(my_, my.ny - my_));
+  });
+}
+
+template <class Real>
+std::unique_ptr<Workspace<Real>> Convolution<Real>::workspace() const {
+  const Implementation& my = *implementation_;
+  const std::size_t scratch_size = my.carrier->scratch_size();
+  const auto threads = static_cast<std::size_t>(my.backend.arena.threads());
+  return std::make_unique<Workspace<Real>>(
+      Workspace<Real>{Buffer<Real>(my.carrier->field_size()), Buffer<Real>(scratch_size * threads), scratch_size});
+}
+
+template <class Real>
+void Convolution<Real>::apply(const Spectrum<Real>& spectrum, const Real* source, Real* result,
+                              Workspace<Real>& workspace) const {
+  const Implementation& my = *implementation_;
+  const Carrier<Real>& carrier = *my.carrier;
+  if (spectrum.values.size() != carrier.spectrum_size() || workspace.field.size() != carrier.field_size()) {
+    fail(Status::invalid_argument, "the spectrum or workspace was made for a convolution of another size");
+  }
+  Real* field = workspace.field.data();
+  const auto scratch = [&](int slot) {
+    return workspace.scratch.data() + static_cast<std::size_t>(slot) * workspace.scratch_size;
+  };
+  const std::int64_t rows = rows_of_a_task(my.nx);
+  my.backend.arena.for_chunks(my.ny, rows, [&](std::int64_t begin, std::int64_t end, int slot) {
+    carrier.rows_forward(begin, end, source, field, scratch(slot));
+  });
+  // A small grid's columns are one task as its rows are.
+  const std::int64_t blocks = my.ny <= rows ? carrier.blocks() : 1;
+  my.backend.arena.for_chunks(carrier.blocks(), blocks, [&](std::int64_t begin, std::int64_t end, int slot) {
+    for (std::int64_t block = begin; block < end; ++block) {
+      carrier.convolve_block(block, spectrum, field, scratch(slot));
+    }
+  });
+  my.backend.arena.for_chunks(my.ny, rows, [&](std::int64_t begin, std::int64_t end, int slot) {
+    carrier.rows_backward(begin, end, field, result, scratch(slot));
+  });
+}
+
+template class Convolution<double>;
+template class Convolution<float>;
+
+}  // namespace brinell::fft

@@ -1,0 +1,176 @@
+// Convolution along the columns of one block, in cache: forward through the tree, at the leaves times the spectrum,
+// and backward. Forward leaf, product and backward leaf are one step in registers.
+#pragma once
+
+#include "simd/kernels/transform_tree.inl"
+
+namespace brinell::simd {
+namespace {
+
+/// Memory to be fetched while the leaves are worked on, evenly, a share with each leaf.
+struct Prefetch {
+  const char* next;
+  std::int64_t bytes_per_position;
+
+  [[gnu::always_inline]] inline void share(std::int64_t positions) {
+    if (next == nullptr) return;
+    const char* const end = next + positions * bytes_per_position;
+    for (; next < end; next += 64) __builtin_prefetch(next, 0, 2);
+  }
+};
+
+template <bool turn, class V>
+[[gnu::always_inline]] inline Complex<V> product(const Complex<V>& x, const V& spectrum) {
+  if constexpr (turn) {
+    return {spectrum * x.im, -(spectrum * x.re)};
+  } else {
+    return {spectrum * x.re, spectrum * x.im};
+  }
+}
+
+/// `count` neighbouring leaves of radix R, from node `node` of the last stage on.
+template <class Arch, std::size_t R, bool turn, class Real>
+void convolve_leaves(const Real* twiddles, std::int64_t count, Real* z, const Real* spectrum, Prefetch& prefetch) {
+  using V = Batch<Arch, Real>;
+  constexpr std::int64_t lanes = kLanes<Arch, Real>;
+  for (std::int64_t leaf = 0; leaf < count; ++leaf) {
+    prefetch.share(R);
+    Complex<V> x[R];
+    load_parts(x, z, 2 * lanes);
+    split(x, twiddles);
+    unrolled<R>([&](auto s) __attribute__((always_inline)) {
+      x[s] = product<turn>(x[s], V::load_aligned(spectrum + static_cast<std::int64_t>(s) * lanes));
+    });
+    join(x, twiddles);
+    store_parts(x, z, 2 * lanes);
+    z += R * 2 * lanes;
+    spectrum += R * lanes;
+    twiddles += 2 * (R - 1);
+  }
+}
+
+/// `count` neighbouring nodes of a stage, each of `length` positions: forward, product, backward.
+template <class Arch, bool turn, class Real>
+void convolve_nodes(const TransformTree<Real>& tree, std::int32_t stage, std::int64_t node, std::int64_t count,
+                    std::int64_t length, Real* z, const Real* spectrum, Prefetch& prefetch) {
+  using V = Batch<Arch, Real>;
+  constexpr std::int64_t lanes = kLanes<Arch, Real>;
+  if (stage == tree.stages) {  // every position is a leaf of its own
+    for (std::int64_t p = 0; p < count; ++p) {
+      store(z + p * 2 * lanes, product<turn>(load<V>(z + p * 2 * lanes), V::load_aligned(spectrum + p * lanes)));
+    }
+    return;
+  }
+  with_radix(tree.radix[stage], [&](auto radix) {
+    constexpr std::int64_t R = radix;
+    const Real* twiddles = tree.twiddles[stage] + node * 2 * (R - 1);
+    const std::int64_t h = length / R;
+    if (h == 1) return convolve_leaves<Arch, R, turn>(twiddles, count, z, spectrum, prefetch);
+    for (std::int64_t n = 0; n < count; ++n) {
+      split_node<Arch, R>(z, h, twiddles);
+      convolve_nodes<Arch, turn>(tree, stage + 1, (node + n) * R, R, h, z, spectrum, prefetch);
+      join_node<Arch, R>(z, h, twiddles);
+      z += length * 2 * lanes;
+      spectrum += length * lanes;
+      twiddles += 2 * (R - 1);
+    }
+  });
+}
+
+/// The first stage of a real sequence, rows `stride` Reals apart, of which `ny` are given and the rest are zero.
+template <class Arch, std::size_t R, class Real>
+void split_real(const Real* rows, std::int64_t stride, std::int64_t ny, std::int64_t h, const Real* twiddles, Real* z,
+                const Real* zeros) {
+  using V = Batch<Arch, Real>;
+  constexpr std::int64_t lanes = kLanes<Arch, Real>;
+  for (std::int64_t j = 0; j < h; ++j) {
+    Complex<V> x[R];
+    unrolled<R>([&](auto s) __attribute__((always_inline)) {
+      const std::int64_t row = j + static_cast<std::int64_t>(s) * h;
+      const V value = V::load_unaligned(row < ny ? rows + row * stride : zeros);
+      if constexpr (s == 0) {
+        x[s] = {value, V(Real{0})};
+      } else {
+        x[s] = {value * V(twiddles[2 * s - 2]), value * V(twiddles[2 * s - 1])};
+      }
+    });
+    dft<-1>(x);
+    store_parts(x, z + j * 2 * lanes, h * 2 * lanes);
+  }
+}
+/// The reverse, of which only the real part of the given rows is wanted.
+template <class Arch, std::size_t R, class Real>
+void join_real(Real* rows, std::int64_t stride, std::int64_t ny, std::int64_t h, const Real* twiddles,
+               const Real* z) {
+  using V = Batch<Arch, Real>;
+  constexpr std::int64_t lanes = kLanes<Arch, Real>;
+  for (std::int64_t j = 0; j < h; ++j) {
+    Complex<V> x[R];
+    load_parts(x, z + j * 2 * lanes, h * 2 * lanes);
+    dft<1>(x);
+    unrolled<R>([&](auto s) __attribute__((always_inline)) {
+      const std::int64_t row = j + static_cast<std::int64_t>(s) * h;
+      if (row >= ny) return;
+      if constexpr (s == 0) {
+        x[s].re.store_unaligned(rows + row * stride);
+      } else {
+        (x[s].re * V(twiddles[2 * s - 2]) + x[s].im * V(twiddles[2 * s - 1])).store_unaligned(rows + row * stride);
+      }
+    });
+  }
+}
+
+template <class Arch, bool turn, class Real>
+void convolve_real(const TransformTree<Real>& tree, std::int64_t ny, Real* rows, const Real* spectrum, Real* scratch,
+                   Prefetch prefetch) {
+  using V = Batch<Arch, Real>;
+  constexpr std::int64_t lanes = kLanes<Arch, Real>;
+  if (tree.stages == 0) {  // one value: its transform is itself, and −i times a real number has no real part
+    const V value = V::load_aligned(rows);
+    (turn ? V(Real{0}) : value * V::load_aligned(spectrum)).store_aligned(rows);
+    return;
+  }
+  Real* zeros = scratch;
+  V(Real{0}).store_aligned(zeros);
+  Real* z = scratch + 2 * lanes;
+  with_radix(tree.radix[0], [&](auto radix) {
+    constexpr std::int64_t R = radix;
+    const std::int64_t h = tree.length / R;
+    split_real<Arch, R>(rows, 2 * lanes, ny, h, tree.twiddles[0], z, zeros);
+    convolve_nodes<Arch, turn>(tree, 1, 0, R, h, z, spectrum, prefetch);
+    join_real<Arch, R>(rows, 2 * lanes, ny, h, tree.twiddles[0], z);
+  });
+}
+
+template <class Arch, class Real>
+void free_block(const ColumnTransform<Real>& transform, const BlockProduct<Real>& product, Real* field,
+                Real* scratch) {
+  using V = Batch<Arch, Real>;
+  constexpr std::int64_t lanes = kLanes<Arch, Real>;
+  const auto bytes = static_cast<std::int64_t>(sizeof(Real)) * lanes;
+  const Prefetch ahead[2] = {{reinterpret_cast<const char*>(product.next_field), 2 * bytes},
+                             {reinterpret_cast<const char*>(product.next_spectrum), bytes}};
+  for (int part = 0; part < 2; ++part) {
+    if (product.turn_y) {
+      convolve_real<Arch, true>(transform.tree, transform.ny, field + part * lanes, product.spectrum, scratch,
+                                ahead[part]);
+    } else {
+      convolve_real<Arch, false>(transform.tree, transform.ny, field + part * lanes, product.spectrum, scratch,
+                                 ahead[part]);
+    }
+  }
+  if (!product.turn_x) return;
+  for (std::int64_t j = 0; j < transform.ny; ++j, field += 2 * lanes) {
+    store(field, turned<-1>(load<V>(field)));
+  }
+}
+
+template <class Arch, class Real>
+void periodic_block(const ColumnTransform<Real>& transform, const BlockProduct<Real>& product, Real* field) {
+  const auto bytes = static_cast<std::int64_t>(sizeof(Real)) * kLanes<Arch, Real>;
+  Prefetch prefetch{reinterpret_cast<const char*>(product.next_field), 2 * bytes};
+  convolve_nodes<Arch, false>(transform.tree, 0, 0, 1, transform.tree.length, field, product.spectrum, prefetch);
+}
+
+}  // namespace
+}  // namespace brinell::simd

@@ -1,0 +1,123 @@
+// The stages of a transform tree (transform_kernels.h) over complex vectors z[position][re, im][lane], walked depth
+// first: a node is finished, down to its leaves, while it lies in the nearest cache.
+#pragma once
+
+#include "simd/kernels/transform_dft.inl"
+#include "simd/transform_kernels.h"
+
+namespace brinell::simd {
+namespace {
+
+template <class Arch, class Real>
+using Batch = xsimd::batch<Real, Arch>;
+
+template <class Arch, class Real>
+inline constexpr std::int64_t kLanes = static_cast<std::int64_t>(Batch<Arch, Real>::size);
+
+template <class V, class Real>
+[[gnu::always_inline]] inline Complex<V> load(const Real* z) {
+  return {V::load_aligned(z), V::load_aligned(z + V::size)};
+}
+template <class V, class Real>
+[[gnu::always_inline]] inline void store(Real* z, const Complex<V>& value) {
+  value.re.store_aligned(z);
+  value.im.store_aligned(z + V::size);
+}
+
+/// x_s := c^s x_s, and the transform of the node.
+template <std::size_t R, class V, class Real>
+[[gnu::always_inline]] inline void split(Complex<V> (&x)[R], const Real* twiddles) {
+  unrolled<R - 1>([&](auto s) __attribute__((always_inline)) {
+    x[s + 1] = times(x[s + 1], V(twiddles[2 * s]), V(twiddles[2 * s + 1]));
+  });
+  dft<-1>(x);
+}
+/// The reverse, times R.
+template <std::size_t R, class V, class Real>
+[[gnu::always_inline]] inline void join(Complex<V> (&x)[R], const Real* twiddles) {
+  dft<1>(x);
+  unrolled<R - 1>([&](auto s) __attribute__((always_inline)) {
+    x[s + 1] = times_conjugate(x[s + 1], V(twiddles[2 * s]), V(twiddles[2 * s + 1]));
+  });
+}
+
+template <std::size_t R, class V, class Real>
+[[gnu::always_inline]] inline void load_parts(Complex<V> (&x)[R], const Real* z, std::int64_t stride) {
+  unrolled<R>([&](auto s)
+                  __attribute__((always_inline)) { x[s] = load<V>(z + static_cast<std::int64_t>(s) * stride); });
+}
+template <std::size_t R, class V, class Real>
+[[gnu::always_inline]] inline void store_parts(const Complex<V> (&x)[R], Real* z, std::int64_t stride) {
+  unrolled<R>([&](auto s) __attribute__((always_inline)) { store(z + static_cast<std::int64_t>(s) * stride, x[s]); });
+}
+
+/// One stage on one node whose parts are h positions long.
+template <class Arch, std::size_t R, class Real>
+void split_node(Real* z, std::int64_t h, const Real* twiddles) {
+  using V = Batch<Arch, Real>;
+  const std::int64_t stride = 2 * kLanes<Arch, Real> * h;
+  for (const Real* end = z + stride; z != end; z += 2 * kLanes<Arch, Real>) {
+    Complex<V> x[R];
+    load_parts(x, z, stride);
+    split(x, twiddles);
+    store_parts(x, z, stride);
+  }
+}
+template <class Arch, std::size_t R, class Real>
+void join_node(Real* z, std::int64_t h, const Real* twiddles) {
+  using V = Batch<Arch, Real>;
+  const std::int64_t stride = 2 * kLanes<Arch, Real> * h;
+  for (const Real* end = z + stride; z != end; z += 2 * kLanes<Arch, Real>) {
+    Complex<V> x[R];
+    load_parts(x, z, stride);
+    join(x, twiddles);
+    store_parts(x, z, stride);
+  }
+}
+
+/// Calls body with the radix as a compile-time constant.
+template <class Body>
+[[gnu::always_inline]] inline void with_radix(std::int32_t radix, Body&& body) {
+  switch (radix) {
+    case 2: return body(std::integral_constant<std::size_t, 2>{});
+    case 3: return body(std::integral_constant<std::size_t, 3>{});
+    case 4: return body(std::integral_constant<std::size_t, 4>{});
+    case 5: return body(std::integral_constant<std::size_t, 5>{});
+    default: return body(std::integral_constant<std::size_t, 8>{});
+  }
+}
+
+/// Node `node` of stage `stage`, `length` positions from z on, down to the leaves.
+template <class Arch, class Real>
+void tree_forward(const TransformTree<Real>& tree, std::int32_t stage, std::int64_t node, std::int64_t length,
+                  Real* z) {
+  if (stage == tree.stages) return;
+  with_radix(tree.radix[stage], [&](auto radix) {
+    constexpr std::int64_t R = radix;
+    const std::int64_t h = length / R;
+    split_node<Arch, R>(z, h, tree.twiddles[stage] + node * 2 * (R - 1));
+    if (h == 1) return;
+    for (std::int64_t t = 0; t < R; ++t) {
+      tree_forward<Arch>(tree, stage + 1, node * R + t, h, z + t * h * 2 * kLanes<Arch, Real>);
+    }
+  });
+}
+
+template <class Arch, class Real>
+void tree_backward(const TransformTree<Real>& tree, std::int32_t stage, std::int64_t node, std::int64_t length,
+                   Real* z) {
+  if (stage == tree.stages) return;
+  with_radix(tree.radix[stage], [&](auto radix) {
+    constexpr std::int64_t R = radix;
+    const std::int64_t h = length / R;
+    if (h > 1) {
+      for (std::int64_t t = 0; t < R; ++t) {
+        tree_backward<Arch>(tree, stage + 1, node * R + t, h, z + t * h * 2 * kLanes<Arch, Real>);
+      }
+    }
+    join_node<Arch, R>(z, h, tree.twiddles[stage] + node * 2 * (R - 1));
+  });
+}
+
+}  // namespace
+}  // namespace brinell::simd

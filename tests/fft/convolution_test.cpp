@@ -1,0 +1,195 @@
+// Convolutions against direct sums in long double. A transform of n points carries an error of about
+// log2(n)·eps/2 relative to the 2-norm; with random data in [−1, 1] the largest entry of a result is then accurate
+// to a small multiple of eps·log2(4·nx·ny)·‖source‖₂·‖kernel‖₂ (bounded by the Cauchy-Schwarz inequality).
+#include "fft/convolution.h"
+
+#include <gtest/gtest.h>
+#include <oneapi/tbb/global_control.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+#include "fft/plan_cache.h"
+#include "parallel/arena.h"
+#include "simd/kernel_table.h"
+#include "support/convolution_reference.h"
+
+namespace brinell::fft {
+namespace {
+
+using support::random_values;
+
+const std::vector<Parity> kParities{Parity::even, Parity::odd};
+
+template <class Real>
+struct Precision : testing::Test {};
+using Precisions = testing::Types<double, float>;
+TYPED_TEST_SUITE(Precision, Precisions);
+
+template <class Real>
+double tolerance(std::int64_t nodes, double source_norm, double kernel_norm) {
+  return 2.0 * std::numeric_limits<Real>::epsilon() * std::log2(8.0 * static_cast<double>(nodes)) * source_norm *
+         kernel_norm;
+}
+
+/// One convolution with everything it runs on.
+template <class Real>
+struct Case {
+  explicit Case(std::int64_t nx, std::int64_t ny, Boundary boundary, Method method = Method::fftw, int threads = 1,
+                simd::Isa isa = simd::supported().back())
+      : arena(threads), convolution({arena, simd::kernels(isa), plans}, nx, ny, boundary, method) {}
+
+  std::vector<Real> apply(const Spectrum<Real>& spectrum, const std::vector<Real>& source) {
+    if (workspace == nullptr) workspace = convolution.workspace();
+    std::vector<Real> result(source.size());
+    convolution.apply(spectrum, source.data(), result.data(), *workspace);
+    return result;
+  }
+
+  parallel::Arena arena;
+  PlanCache plans;
+  Convolution<Real> convolution;
+  std::unique_ptr<Workspace<Real>> workspace;
+};
+
+/// All four parities of one free size against the direct sum.
+template <class Real>
+void check_free(std::int64_t nx, std::int64_t ny, Method method, simd::Isa isa) {
+  Case<Real> with(nx, ny, Boundary::free, method, 1, isa);
+  const auto source = random_values<Real>(nx * ny, 1);
+  const auto kernel = random_values<double>(nx * ny, 2);
+  for (const Parity parity_x : kParities) {
+    for (const Parity parity_y : kParities) {
+      const auto spectrum = with.convolution.spectrum(kernel.data(), parity_x, parity_y);
+      const auto result = with.apply(spectrum, source);
+      const auto expected = support::free_convolution(source, kernel, nx, ny, parity_x, parity_y);
+      const double allowed = tolerance<Real>(nx * ny, support::norm(source), 2 * support::norm(kernel));
+      EXPECT_LE(support::largest_difference(result, expected), allowed)
+          << nx << " x " << ny << " parity " << int(parity_x) << int(parity_y) << " " << simd::name(isa);
+    }
+  }
+}
+
+template <class Real>
+void check_periodic(std::int64_t nx, std::int64_t ny, Method method, simd::Isa isa) {
+  Case<Real> with(nx, ny, Boundary::periodic, method, 1, isa);
+  const auto source = random_values<Real>(nx * ny, 1);
+  const auto symbol = random_values<double>((nx / 2 + 1) * (ny / 2 + 1), 3);
+  const auto value = [&](std::int64_t kx, std::int64_t ky) { return symbol.at(ky * (nx / 2 + 1) + kx); };
+  const auto spectrum = with.convolution.spectrum_of_symbol(value);
+  const auto result = with.apply(spectrum, source);
+  const auto expected = support::periodic_convolution<Real>(source, nx, ny, value);
+  // |symbol| <= 1 does not lengthen the source.
+  const double allowed = tolerance<Real>(nx * ny, support::norm(source), 1.0);
+  EXPECT_LE(support::largest_difference(result, expected), allowed) << nx << " x " << ny << " " << simd::name(isa);
+}
+
+TYPED_TEST(Precision, free_convolution_by_fftw_is_the_direct_sum) {
+  for (std::int64_t nx = 1; nx <= 20; ++nx) {
+    for (std::int64_t ny = 1; ny <= 20; ++ny) check_free<TypeParam>(nx, ny, Method::fftw, simd::Isa::baseline);
+  }
+  for (const auto& [nx, ny] : {std::pair{37, 41}, {1, 97}, {97, 1}, {64, 31}, {31, 64}, {40, 40}}) {
+    check_free<TypeParam>(nx, ny, Method::fftw, simd::Isa::baseline);
+  }
+}
+
+TYPED_TEST(Precision, periodic_convolution_by_fftw_is_the_direct_sum) {
+  for (std::int64_t nx = 1; nx <= 17; ++nx) {
+    for (std::int64_t ny = 1; ny <= 17; ++ny) check_periodic<TypeParam>(nx, ny, Method::fftw, simd::Isa::baseline);
+  }
+  for (const auto& [nx, ny] : {std::pair{29, 31}, {1, 97}, {97, 1}, {64, 9}, {9, 64}}) {
+    check_periodic<TypeParam>(nx, ny, Method::fftw, simd::Isa::baseline);
+  }
+}
+
+TYPED_TEST(Precision, free_convolution_by_lanes_is_the_direct_sum) {
+  for (const simd::Isa isa : simd::supported()) {
+    for (std::int64_t nx = 1; nx <= 40; nx += 3) {
+      for (std::int64_t ny = 1; ny <= 40; ny += 3) check_free<TypeParam>(nx, ny, Method::lanes, isa);
+    }
+    for (const auto& [nx, ny] : {std::pair{37, 41}, {1, 97}, {97, 1}, {64, 31}, {31, 64}, {128, 25}, {320, 12}}) {
+      check_free<TypeParam>(nx, ny, Method::lanes, isa);
+    }
+  }
+}
+
+TYPED_TEST(Precision, periodic_convolution_by_lanes_is_the_direct_sum) {
+  for (const simd::Isa isa : simd::supported()) {
+    const std::int64_t lanes = simd::kernels(isa).of<TypeParam>().transform.lanes;
+    for (const std::int64_t vectors : {1, 2, 3, 4, 5, 6, 8, 12, 15, 16, 20, 32}) {
+      for (const std::int64_t ny : {1, 2, 3, 4, 5, 6, 8, 9, 10, 12, 15, 16, 18, 20, 24, 25, 32, 40}) {
+        check_periodic<TypeParam>(lanes * vectors, ny, Method::lanes, isa);
+      }
+    }
+  }
+}
+
+TYPED_TEST(Precision, same_bits_for_any_number_of_threads_and_in_place) {
+  using Real = TypeParam;
+  const oneapi::tbb::global_control eight(oneapi::tbb::global_control::max_allowed_parallelism, 8);
+  constexpr std::int64_t nx = 300;
+  constexpr std::int64_t ny = 270;
+  const auto source = random_values<Real>(nx * ny, 1);
+  const auto kernel = random_values<double>(nx * ny, 2);
+  for (const Boundary boundary : {Boundary::free, Boundary::periodic}) {
+    std::vector<Real> first;
+    for (const int threads : {1, 2, 3, 8}) {
+      Case<Real> with(nx, ny, boundary, Method::automatic, threads);
+      const auto spectrum = boundary == Boundary::free
+                                ? with.convolution.spectrum(kernel.data(), Parity::even, Parity::odd)
+                                : with.convolution.spectrum_of_symbol([](std::int64_t kx, std::int64_t ky) {
+                                    return 1.0 / static_cast<double>(1 + kx * kx + ky * ky);
+                                  });
+      auto result = with.apply(spectrum, source);
+      if (first.empty()) first = result;
+      EXPECT_EQ(std::memcmp(result.data(), first.data(), result.size() * sizeof(Real)), 0) << threads;
+      std::vector<Real> in_place = source;
+      with.convolution.apply(spectrum, in_place.data(), in_place.data(), *with.workspace);
+      EXPECT_EQ(std::memcmp(in_place.data(), first.data(), result.size() * sizeof(Real)), 0) << threads;
+    }
+  }
+}
+
+TYPED_TEST(Precision, writes_nothing_but_the_result) {
+  using Real = TypeParam;
+  for (const std::int64_t nx : {1, 7, 33, 64}) {
+    constexpr std::int64_t ny = 5;
+    for (const Boundary boundary : {Boundary::free, Boundary::periodic}) {
+      Case<Real> with(nx, ny, boundary, Method::automatic);
+      const std::vector<double> ones(nx * ny, 1.0);
+      const auto spectrum = boundary == Boundary::free
+                                ? with.convolution.spectrum(ones.data(), Parity::even, Parity::even)
+                                : with.convolution.spectrum_of_symbol([](std::int64_t, std::int64_t) { return 1.0; });
+      std::vector<Real> memory(nx * ny + 2, Real{42});
+      const std::vector<Real> source(nx * ny, Real{1});
+      const auto workspace = with.convolution.workspace();
+      with.convolution.apply(spectrum, source.data(), memory.data() + 1, *workspace);
+      EXPECT_EQ(memory.front(), Real{42});
+      EXPECT_EQ(memory.back(), Real{42});
+    }
+  }
+}
+
+TEST(Convolution, refuses_what_it_cannot_do) {
+  EXPECT_THROW(Case<double>(0, 4, Boundary::free), Error);
+  EXPECT_THROW(Case<double>(4, -1, Boundary::free), Error);
+  EXPECT_THROW(Case<double>(std::int64_t{1} << 40, 1, Boundary::periodic), Error);
+  Case<double> free(4, 4, Boundary::free);
+  EXPECT_THROW(free.convolution.spectrum_of_symbol([](std::int64_t, std::int64_t) { return 1.0; }), Error);
+  Case<double> periodic(4, 4, Boundary::periodic);
+  const std::vector<double> kernel(16, 1.0);
+  EXPECT_THROW(periodic.convolution.spectrum(kernel.data(), Parity::even, Parity::even), Error);
+
+  const auto spectrum = free.convolution.spectrum(kernel.data(), Parity::even, Parity::even);
+  Case<double> other(40, 40, Boundary::free);
+  EXPECT_THROW(other.apply(spectrum, std::vector<double>(1600)), Error);
+}
+
+}  // namespace
+}  // namespace brinell::fft

@@ -1,0 +1,4 @@
+#!/bin/sh
+# Stands in for nm: its last argument is the listing itself.
+for file in "$@"; do :; done
+cat "$file"
