@@ -19,8 +19,11 @@ namespace brinell::influence {
 /// 2/|q| [m] at the wave numbers kx, ky (cycles per period); 0 at q = 0.
 double displacement_symbol(const Grid& grid, std::int64_t kx, std::int64_t ky);
 
-/// |q|/2 [1/m], the pressure that makes a unit displacement; at_zero at q = 0.
-double inverse_displacement_symbol(const Grid& grid, std::int64_t kx, std::int64_t ky, double at_zero);
+/// The pressure that makes a unit displacement, approximately [1/m]: half the square root of the discrete Laplacian,
+///   √( sin²(π kx/nx)/dx² + sin²(π ky/ny)/dy² )  ~  |q|/2.
+/// Its coefficients between different nodes are non-positive (a fractional power of an M-matrix is one), which |q|/2
+/// sampled at the wave numbers does not give. At q = 0, half the least of the other values keeps it definite.
+double conductance_symbol(const Grid& grid, std::int64_t kx, std::int64_t ky);
 
 /// Displacement [m] = (1/E*) · convolution with pressure [Pa]. The convolution was made for the grid's nodes, this
 /// boundary and this backend.
@@ -29,11 +32,10 @@ std::shared_ptr<const fft::Spectrum<Real>> displacement_spectrum(SpectrumCache& 
                                                                  const fft::Convolution<Real>& convolution,
                                                                  const Grid& grid, Boundary boundary);
 
-/// |q|/2 for a periodic convolution of the grid's nodes: exact on a periodic boundary, a preconditioner on a free
-/// one.
+/// The conductance for a periodic convolution of the grid's nodes.
 template <class Real>
-std::shared_ptr<const fft::Spectrum<Real>> inverse_displacement_spectrum(SpectrumCache& cache,
-                                                                         const fft::Convolution<Real>& convolution,
-                                                                         const Grid& grid, double at_zero);
+std::shared_ptr<const fft::Spectrum<Real>> conductance_spectrum(SpectrumCache& cache,
+                                                                const fft::Convolution<Real>& convolution,
+                                                                const Grid& grid);
 
 }  // namespace brinell::influence

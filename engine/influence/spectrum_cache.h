@@ -18,10 +18,10 @@
 
 namespace brinell::influence {
 
-/// What a spectrum responds to, and what `parameter` of its key means.
+/// What a spectrum responds to.
 enum class Response : std::int32_t {
-  displacement = 0,          // normal surface displacement of a pressure; none
-  inverse_displacement = 1,  // |q|/2; the value at q = 0
+  displacement = 0,  // normal surface displacement of a pressure
+  conductance = 1,   // its approximate inverse
 };
 
 struct SpectrumKey {
@@ -30,7 +30,6 @@ struct SpectrumKey {
   fft::Method method = fft::Method::automatic;
   std::int64_t nx = 0, ny = 0;
   double dx = 0, dy = 0;
-  double parameter = 0;
   bool single_precision = false;  // set by the cache
 
   friend auto operator<=>(const SpectrumKey&, const SpectrumKey&) = default;

@@ -71,10 +71,9 @@ TEST_F(Spectra, come_from_the_cache_the_second_time) {
   EXPECT_EQ(displacement_spectrum(cache, backend, second, grid, Boundary::free), spectrum);
   const auto other = displacement_spectrum(cache, backend, periodic, grid, Boundary::periodic);
   EXPECT_NE(other, spectrum);
-  const auto inverse = inverse_displacement_spectrum(cache, periodic, grid, 0.0);
-  EXPECT_NE(inverse, other);
-  EXPECT_EQ(inverse_displacement_spectrum(cache, periodic, grid, 0.0), inverse);
-  EXPECT_NE(inverse_displacement_spectrum(cache, periodic, grid, 1.0), inverse);
+  const auto conductance = conductance_spectrum(cache, periodic, grid);
+  EXPECT_NE(conductance, other);
+  EXPECT_EQ(conductance_spectrum(cache, periodic, grid), conductance);
   EXPECT_NE(displacement_spectrum(cache, backend, single, grid, Boundary::free), nullptr);
 }
 
@@ -102,19 +101,40 @@ TEST_F(Spectra, periodic_displacement_of_a_wave_is_two_over_its_wave_number) {
   }
 }
 
-TEST_F(Spectra, inverse_displacement_undoes_the_displacement_but_for_the_mean) {
+TEST_F(Spectra, mean_of_a_periodic_displacement_is_zero) {
   for (const Grid grid : {Grid{12, 9, 1, 1}, Grid{7, 16, 2e-6, 1e-6}}) {
     const fft::Convolution<double> convolution(backend, grid.nx, grid.ny, Boundary::periodic);
-    const auto pressure = some_pressure<double>(grid);
+    const auto displacement = apply(
+        convolution, *displacement_spectrum(cache, backend, convolution, grid, Boundary::periodic),
+        some_pressure<double>(grid));
     double mean = 0;
-    for (const double p : pressure) mean += p / static_cast<double>(pressure.size());
-    const auto displacement =
-        apply(convolution, *displacement_spectrum(cache, backend, convolution, grid, Boundary::periodic), pressure);
-    double mean_displacement = 0;
-    for (const double u : displacement) mean_displacement += u;
-    EXPECT_NEAR(mean_displacement, 0.0, 1e-12 * grid.dx);
-    const auto back = apply(convolution, *inverse_displacement_spectrum(cache, convolution, grid, 0.0), displacement);
-    for (std::size_t n = 0; n < pressure.size(); ++n) EXPECT_NEAR(back[n], pressure[n] - mean, 1e-12);
+    for (const double u : displacement) mean += u;
+    EXPECT_NEAR(mean, 0.0, 1e-12 * grid.dx);
+  }
+}
+
+TEST_F(Spectra, conductance_is_the_positive_definite_graph_of_an_m_matrix) {
+  for (const Grid grid : {Grid{12, 9, 1, 1}, Grid{7, 16, 2e-6, 1e-6}, Grid{1, 5, 1, 3}, Grid{8, 1, 1, 1}, Grid{1, 1, 1, 1}}) {
+    const fft::Convolution<double> convolution(backend, grid.nx, grid.ny, Boundary::periodic);
+    std::vector<double> unit(grid.nodes());
+    unit[0] = 1;
+    const auto row = apply(convolution, *conductance_spectrum(cache, convolution, grid), unit);
+    double sum = 0;
+    for (std::size_t n = 0; n < row.size(); ++n) {
+      sum += row[n];
+      if (n != 0) EXPECT_LE(row[n], row[0] / static_cast<double>(row.size()));  // the share of the value at q = 0
+    }
+    EXPECT_GT(sum, 0.0);
+    EXPECT_NEAR(sum, conductance_symbol(grid, 0, 0), 1e-13 * row[0]);
+  }
+}
+
+TEST_F(Spectra, conductance_of_a_long_wave_is_half_its_wave_number) {
+  const Grid grid{512, 256, 1e-6, 2e-6};
+  for (const std::int64_t k : {1, 2, 4}) {
+    // sin(x) = x (1 - x²/6 + ...) with x = pi k/n
+    const double qx = 2 * std::numbers::pi * static_cast<double>(k) / (512 * grid.dx);
+    EXPECT_NEAR(conductance_symbol(grid, k, 0), qx / 2, std::pow(qx * grid.dx / 2, 2) / 6 * qx / 2 * 1.01);
   }
 }
 

@@ -1,0 +1,198 @@
+#include "contact/level.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/error.h"
+#include "influence/displacement.h"
+
+namespace brinell::contact {
+
+namespace {
+
+// A node that enters the contact gets this fraction of the mean pressure: in contact, but without effect.
+constexpr double kSeed = 1e-30;
+// Tension is clipped when the displacement that it could cause exceeds this fraction of the present error.
+constexpr double kTensionToError = 0.5;
+// The preconditioner follows the contact when this fraction of its nodes has changed.
+constexpr double kAdaptAfter = 0.02;
+// Conjugacy is given up when one iteration changes this fraction of the nodes in contact.
+constexpr double kRestartAfter = 0.1;
+// Rises of the energy, each after a fresh convolution, until a part of the preconditioner is given up.
+constexpr int kRises = 3;
+// Iterations without a better certificate until the level is given up: round-off has been reached.
+constexpr int kPatience = 150;
+
+}  // namespace
+
+template <class Real>
+Level<Real>::Level(const Resources& resources, const Compliance<double>& exact, const Grid& grid, Boundary boundary,
+                   const double* gap, double scale, State state)
+    : arena_(resources.backend.arena),
+      grid_(grid),
+      gap_(gap),
+      scale_(scale),
+      state_(state),
+      self_compliance_(influence::Displacement(grid.dx, grid.dy)(0, 0)),
+      exact_(exact),
+      preconditioner_(resources, grid, boundary),
+      passes_(arena_, resources.backend.kernels, grid.nodes()),
+      v_(grid.nodes()),
+      q_(grid.nodes()),
+      z_(Buffer<Real>::uninitialised(grid.nodes())) {
+  if constexpr (std::is_same_v<Real, float>) fast_.emplace(resources, grid, boundary);
+}
+
+/// Clipped and rescaled pressure, its displacement by a fresh convolution, and all that follows from them.
+template <class Real>
+void Level<Real>::refresh(LevelResult& result) {
+  total_ = passes_.clip(1, state_.p);
+  if (drive_ == Drive::force && total_ != target_) total_ = passes_.clip(target_ / total_, state_.p);
+  exact_.apply(state_.p, state_.g);
+  ++result.convolutions;
+  const simd::RefreshSums fresh = passes_.refresh(scale_, gap_, state_.p, state_.g);
+  sums_ = {fresh.active, fresh.gap, fresh.min_gap, 0};
+  displacement_ = fresh.displacement;
+  energy_ = fresh.energy - (drive_ == Drive::approach ? target_ * total_ : 0);
+}
+
+template <class Real>
+Certificate Level<Real>::estimate(double complementarity) const {
+  return certificate_of({approach_, total_, displacement_, sums_.min_gap, complementarity,
+                         self_compliance_ * std::max(0.0, sums_.tension)},
+                        drive_, target_);
+}
+
+template <class Real>
+void Level<Real>::correct_start(Drive drive, double target) {
+  const simd::RefreshSums start = passes_.refresh(scale_, gap_, state_.p, state_.g);
+  if (start.active == 0) return;
+  const double approach = drive == Drive::force ? start.gap / start.active : target;
+  passes_.residual(approach, 0, state_.p, state_.g, z_.data());
+  preconditioner_.apply_local(z_.data());
+  const double mean = drive == Drive::force ? passes_.sum(state_.p, z_.data()) / start.active : 0;
+  passes_.correct(mean, state_.p, z_.data());
+}
+
+template <class Real>
+LevelResult Level<Real>::solve(Drive drive, double target, double tolerance, std::int32_t max_iterations,
+                               Observer observer) {
+  LevelResult result;
+  drive_ = drive;
+  target_ = target;
+  const double nodes = static_cast<double>(grid_.nodes());
+  if (drive == Drive::force && !(passes_.clip(1, state_.p) > 0)) {
+    std::fill_n(state_.p, grid_.nodes(), target / nodes);
+  }
+  refresh(result);
+
+  bool fresh = true;
+  bool adapted = false;
+  bool conjugate = false;
+  bool preconditioned = true;
+  int rises = 0;
+  int idle = 0;
+  double changed = 0;
+  double last_energy = std::numeric_limits<double>::infinity();
+  double best = std::numeric_limits<double>::infinity();
+  double in_contact = sums_.active;
+
+  while (true) {
+    if (drive == Drive::approach || sums_.active > 0) {
+      approach_ = drive == Drive::force ? sums_.gap / sums_.active : target;
+    }
+    const double seed = kSeed * std::max(total_ / nodes, std::numeric_limits<double>::min() / kSeed);
+    simd::ResidualSums residual = passes_.residual(approach_, seed, state_.p, state_.g, z_.data());
+    const double changes = residual.entered + std::max(0.0, in_contact - sums_.active);
+    in_contact = residual.active;
+    changed += changes;
+
+    const Certificate certificate = estimate(residual.complementarity);
+    if (!observer({grid_, result.iterations, fresh, certificate.worst()})) {
+      fail(Status::cancelled, "the progress callback asked to stop");
+    }
+    if (fresh) {
+      result.approach = approach_;
+      result.total = total_;
+      result.certificate = certificate;
+      result.converged = certificate.worst() <= tolerance;
+      const bool stalled = ++idle > kPatience;
+      if (certificate.worst() < best) {
+        best = certificate.worst();
+        idle = 0;
+      }
+      if (result.converged || stalled || result.iterations >= max_iterations || in_contact == 0) return result;
+    } else {
+      const double error = std::max(certificate.penetration, certificate.complementarity);
+      const bool overdue = certificate.tension > kTensionToError * error || error <= tolerance;
+      if (overdue || result.iterations >= max_iterations) {
+        refresh(result);
+        fresh = true;
+        if (energy_ > last_energy + 1e-12 * std::fabs(last_energy) && error > 1e2 * tolerance) {
+          conjugate = false;
+          if (++rises % kRises == 0) {
+            preconditioned = rises < 2 * kRises;
+            preconditioner_.drop_large_scales();
+          }
+        }
+        last_energy = energy_;
+        continue;
+      }
+    }
+
+    if (preconditioned && (!adapted || changed > kAdaptAfter * in_contact)) {
+      preconditioner_.adapt(passes_, state_.p, z_.data());
+      residual = passes_.residual(approach_, seed, state_.p, state_.g, z_.data());
+      adapted = true;
+      changed = 0;
+    }
+    if (preconditioned) preconditioner_.apply(z_.data());
+
+    const simd::DirectionSums sums = passes_.correlate(state_.p, z_.data(), v_.data(), q_.data());
+    const double mean_z = drive == Drive::force ? sums.z / in_contact : 0;
+    const double mean_v = drive == Drive::force ? sums.v / in_contact : 0;
+    const double curvature_before = sums.vq - mean_v * sums.q;
+    double beta = 0;
+    if (conjugate && changes <= kRestartAfter * in_contact && curvature_before > 0) {
+      beta = std::max(0.0, (sums.zq - mean_z * sums.q) / curvature_before);
+    }
+    double slope = passes_.redirect(beta, mean_v, mean_z, approach_, state_.p, state_.g, z_.data(), v_.data());
+    if (!(slope < 0) && beta > 0) {
+      slope = passes_.redirect(0, 0, mean_z, approach_, state_.p, state_.g, z_.data(), v_.data());
+    }
+
+    double step = 0;
+    if (slope < 0) {
+      if constexpr (std::is_same_v<Real, float>) {
+        fast_->apply(v_.data(), q_.data());
+      } else {
+        exact_.apply(v_.data(), q_.data());
+      }
+      ++result.convolutions;
+      const double curvature = passes_.dot(v_.data(), q_.data());
+      if (curvature > 0) step = -slope / curvature;
+    }
+    ++result.iterations;
+    ++idle;
+    conjugate = step > 0;
+    sums_ = passes_.advance(step, state_.p, v_.data(), state_.g, q_.data());
+    fresh = false;
+    if (step == 0) {  // a lone node, or a residual at round-off: only the entering nodes can change anything
+      refresh(result);
+      fresh = true;
+    }
+  }
+}
+
+template <class Real>
+std::size_t Level<Real>::bytes(const fft::Backend& backend, const Grid& grid, Boundary boundary) {
+  std::size_t bytes = Preconditioner<Real>::bytes(backend, grid) + 3 * Buffer<Real>::padded_bytes(grid.nodes());
+  if constexpr (std::is_same_v<Real, float>) bytes += Compliance<float>::bytes(backend, grid, boundary);
+  return bytes;
+}
+
+template class Level<double>;
+template class Level<float>;
+
+}  // namespace brinell::contact

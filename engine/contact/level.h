@@ -1,0 +1,92 @@
+// Conjugate gradients for the constrained problem on one grid.
+//
+// The nodes in contact change as the iteration goes; the direction is kept conjugate to the last one across small
+// changes (E. A. H. Vollebregt, "The bound-constrained conjugate gradient method for non-negative matrices", 2014),
+// after I. A. Polonsky and L. M. Keer (1999). Each iteration costs one convolution:
+//
+//   r = gap − approach in contact; a prescribed force makes the approach the mean gap in contact
+//   z = preconditioner · r, less its mean in contact if the force is prescribed
+//   v = −z + β v,   β = z·q / v·q,   q = K v_old
+//   p += α v, gap += α K v,   α = −r·v / v·K v
+//
+// Nodes with a negative deformed gap enter at once. Nodes whose pressure turns negative leave, but keep that tension
+// until it matters: taking it out changes the displacement everywhere, which costs another convolution. It is clipped,
+// and the displacement recomputed, when it could cause a displacement comparable to the present error, and always
+// before convergence is declared: the certificate that is reported comes from a fresh convolution.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "base/buffer.h"
+#include "contact/certificate.h"
+#include "contact/compliance.h"
+#include "contact/passes.h"
+#include "contact/preconditioner.h"
+#include "contact/problem.h"
+
+namespace brinell::contact {
+
+/// What a level starts from and ends with, borrowed: pressure p [E*], and the gap of the deformed surfaces before the
+/// approach is taken off, g = h + K p.
+struct State {
+  double* p;
+  double* g;
+};
+
+struct LevelResult {
+  bool converged = false;
+  double approach = 0;
+  double total = 0;  // Σ p
+  Certificate certificate;
+  std::int32_t iterations = 0;
+  std::int32_t convolutions = 0;
+};
+
+/// Real = float: directions in single precision, pressure, gap and certificate in double.
+template <class Real>
+class Level {
+ public:
+  /// gap · scale is the undeformed gap h; exact is the compliance of this grid.
+  Level(const Resources& resources, const Compliance<double>& exact, const Grid& grid, Boundary boundary,
+        const double* gap, double scale, State state);
+
+  /// One preconditioned step from a start whose displacement is known approximately: on entry p is the pressure and g
+  /// that displacement. It brings in what a coarser grid could not know.
+  void correct_start(Drive drive, double target);
+
+  /// target: Σ p > 0, or the approach. Starts from state.p.
+  LevelResult solve(Drive drive, double target, double tolerance, std::int32_t max_iterations, Observer observer);
+
+  /// Bytes of one on such a grid, without the exact compliance.
+  static std::size_t bytes(const fft::Backend& backend, const Grid& grid, Boundary boundary);
+
+ private:
+  void refresh(LevelResult& result);
+  Certificate estimate(double complementarity) const;
+
+  const parallel::Arena& arena_;
+  Grid grid_;
+  const double* gap_;
+  double scale_;
+  State state_;
+  double self_compliance_;
+
+  const Compliance<double>& exact_;
+  std::optional<Compliance<float>> fast_;  // Real = float
+  Preconditioner<Real> preconditioner_;
+  Passes<Real> passes_;
+  Buffer<Real> v_, q_, z_;
+
+  // Of the present state:
+  Drive drive_ = Drive::force;
+  double target_ = 0;
+  double total_ = 0;  // Σ p of the clipped pressure
+  double energy_ = 0;
+  double displacement_ = 0;  // largest, as of the last fresh convolution
+  double approach_ = 0;
+  simd::AdvanceSums sums_;
+};
+
+}  // namespace brinell::contact

@@ -1,0 +1,54 @@
+// The constrained problem of normal contact, and the words in which its solution is certified.
+//
+//   p >= 0,   gap + K p − approach >= 0,   p · (gap + K p − approach) = 0
+//
+// with either the approach prescribed, or Σ p (then the approach follows). Everything in this room is free of units:
+// lengths in units of the finest grid's dx, pressures in units of the contact modulus E*, so that a change of units
+// changes nothing.
+#pragma once
+
+#include <cstdint>
+
+#include "base/function_ref.h"
+#include "base/grid.h"
+#include "fft/convolution.h"
+#include "influence/spectrum_cache.h"
+
+namespace brinell::contact {
+
+/// What an engine lends to its solvers; all of it outlives them.
+struct Resources {
+  fft::Backend backend;
+  influence::SpectrumCache& spectra;
+};
+
+enum class Drive : std::int32_t { force, approach };
+
+struct Settings {
+  double tolerance = 1e-8;            // on the certificate
+  std::int32_t max_iterations = 2000;  // on the full grid
+  bool mixed_precision = false;       // directions and their displacements in single precision
+};
+
+/// How far a state is from a solution; every entry relative.
+struct Certificate {
+  double penetration = 0;      // largest interpenetration / largest displacement
+  double complementarity = 0;  // Σ p |deformed gap| / (Σ p · largest displacement)
+  double tension = 0;          // displacement that the largest tensile pressure causes / largest displacement
+  double balance = 0;          // |Σ p − prescribed| / prescribed
+
+  double worst() const;
+};
+
+/// Told after every iteration.
+struct Report {
+  const Grid& grid;  // unit lengths
+  std::int32_t iteration;
+  bool certified;  // the certificate was recomputed with a fresh convolution
+  double certificate;
+};
+
+/// Returns false to stop: the solver then throws Status::cancelled.
+using Observer = FunctionRef<bool(const Report&)>;
+
+}  // namespace brinell::contact

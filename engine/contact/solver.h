@@ -1,0 +1,75 @@
+// Normal contact of two half-spaces: the pressure that carries a prescribed force, or that a prescribed approach makes.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "base/buffer.h"
+#include "contact/level.h"
+#include "contact/nested_grids.h"
+#include "contact/problem.h"
+
+namespace brinell::contact {
+
+struct Solution {
+  bool converged = false;
+  double approach = 0;  // [m]
+  double total = 0;     // Σ p [E*]
+  Certificate certificate;
+  std::int32_t iterations = 0;    // on the full grid
+  std::int32_t convolutions = 0;  // on the full grid, the certificate's included
+};
+
+/// Keeps the state of one contact from increment to increment. Lengths in metres, pressures in units of E*.
+class Solver {
+ public:
+  /// gap [m] is borrowed: it outlives the solver and does not change.
+  Solver(const Resources& resources, const Grid& grid, Boundary boundary, const double* gap, bool mixed_precision);
+  ~Solver();
+
+  /// target: Σ p >= 0 [E*], or the approach [m]. Starts from the present pressure. If the observer stops it,
+  /// Status::cancelled is thrown and the state is undefined: restore() it.
+  Solution solve(Drive drive, double target, double tolerance, std::int32_t max_iterations, Observer observer);
+
+  /// Pressure [E*] of every node.
+  const Buffer<double>& pressure() const { return p_; }
+
+  /// Gap of the deformed surfaces before the approach is taken off, in units of dx.
+  const Buffer<double>& deformed_gap() const { return g_; }
+
+  double first_touch() const { return first_touch_; }  // [m]
+
+  /// Sets the pressure that the next solution starts from, and the displacement that belongs to it.
+  void restore(const double* pressure);
+
+  static std::size_t bytes(const fft::Backend& backend, const Grid& grid, Boundary boundary, bool mixed_precision);
+
+ private:
+  template <class Real>
+  Solution solve_nested(Drive drive, double target, double tolerance, std::int32_t max_iterations, Observer observer);
+  const Compliance<double>& full_compliance();
+  template <class Real>
+  Level<Real>& full_level();
+  bool start_is_close(Drive drive, double target) const;
+  void separate();
+
+  Resources resources_;
+  Grid grid_;  // unit lengths: dx = 1
+  Boundary boundary_;
+  const double* gap_;
+  double scale_;  // metres to unit lengths
+  bool mixed_precision_;
+  double first_touch_ = 0;
+  double mean_gap_ = 0;
+  std::vector<CoarserGrid> coarser_;
+  Buffer<double> p_, g_;
+  std::unique_ptr<Compliance<double>> compliance_;  // of the full grid; this and the next made when first needed
+  std::unique_ptr<Level<double>> in_double_;
+  std::unique_ptr<Level<float>> in_single_;
+  double total_ = 0;     // Σ p of the last solution
+  double approach_ = 0;  // of the last solution [m]
+};
+
+}  // namespace brinell::contact
