@@ -101,7 +101,7 @@ void bm_stress(benchmark::State& state, std::int64_t n, influence::Traction trac
 
 template <class... Arguments>
 void add(const std::string& name, Arguments... arguments) {
-  benchmark::RegisterBenchmark(name.c_str(), arguments...)->Unit(benchmark::kMillisecond);
+  benchmark::RegisterBenchmark(name.c_str(), arguments...)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
 }
 
 void add_all() {

@@ -16,11 +16,35 @@ namespace brinell::cli {
 namespace {
 
 nlohmann::json read_summary(const RunFolder& folder) {
-  const auto summary = nlohmann::json::parse(read_bytes(folder.summary()), nullptr, false);
+  auto summary = nlohmann::json::parse(read_bytes(folder.summary()), nullptr, false);
   if (!summary.is_object() || !summary.contains("increments") || !summary["increments"].is_array()) {
     fail_file(folder.summary(), "is not the summary of a run");
   }
   return summary;
+}
+
+double number(const nlohmann::json& increment, const char* key) {
+  return increment.contains(key) && increment[key].is_number() ? increment[key].get<double>() : std::nan("");
+}
+
+/// A unit in which a number near `extent` reads without an exponent.
+struct ReadableUnit {
+  double scale;  ///< SI units in one of these
+  const char* name;
+};
+
+ReadableUnit readable_length(double extent) {
+  if (extent < 1e-6) return {1e-9, "nm"};
+  if (extent < 1e-3) return {1e-6, "um"};
+  if (extent < 1) return {1e-3, "mm"};
+  return {1, "m"};
+}
+
+ReadableUnit readable_pressure(double extent) {
+  if (extent > 1e9) return {1e9, "GPa"};
+  if (extent > 1e6) return {1e6, "MPa"};
+  if (extent > 1e3) return {1e3, "kPa"};
+  return {1, "Pa"};
 }
 
 void draw_trace(const RunFolder& folder) {
@@ -38,19 +62,21 @@ void draw_trace(const RunFolder& folder) {
 }
 
 void draw_history(const RunFolder& folder, const nlohmann::json& increments) {
+  double extent = 0;
+  for (const auto& increment : increments) extent = std::max(extent, std::abs(number(increment, "approach")));
+  const ReadableUnit unit = readable_length(extent);
   std::string data;
   for (const auto& increment : increments) {
-    for (const char* key : {"normal_force", "approach", "contact_area"}) {
-      data += increment.at(key).is_number() ? number_text(increment[key].get<double>()) + " " : "NaN ";
-    }
-    data += "\n";
+    data += number_text(number(increment, "approach") / unit.scale) + " " +
+            number_text(number(increment, "normal_force")) + " " + number_text(number(increment, "contact_area")) +
+            "\n";
   }
   draw_picture(folder.path() / "history",
-               "$data << EOD\n" + data +
-                   "EOD\nset grid\nset y2tics\nset ytics nomirror\nset key top left\n"
-                   "set xlabel 'approach [m]'\nset ylabel 'normal force [N]'\nset y2label 'contact area [m^2]'\n"
-                   "plot $data using 2:1 with linespoints pt 7 title 'force', "
-                   "$data using 2:3 axes x1y2 with linespoints pt 6 title 'area'");
+               "$data << EOD\n" + data + "EOD\nset multiplot layout 2,1\nset grid\nset xlabel 'approach [" +
+                   unit.name +
+                   "]'\nset format y '%g'\nset ylabel 'force [N]'\n"
+                   "plot $data using 1:2 with linespoints pt 7 notitle\nset ylabel 'contact area [m^2]'\n"
+                   "plot $data using 1:3 with linespoints pt 7 lc 2 notitle\nunset multiplot");
 }
 
 /// Largest value of each block, so that small contacts stay visible when a map has more nodes than the picture.
@@ -82,25 +108,26 @@ bool draw_pressure(const RunFolder& folder, const nlohmann::json& last) {
   } catch (const FileError&) {
     return false;
   }
+  const double extent = std::max(map.dx * static_cast<double>(map.nx), map.dy * static_cast<double>(map.ny));
+  const ReadableUnit length = readable_length(extent);
+  const ReadableUnit pressure = readable_pressure(*std::max_element(map.heights.begin(), map.heights.end()));
   std::string data;
   for (std::int64_t j = 0; j < map.ny; ++j) {
     for (std::int64_t i = 0; i < map.nx; ++i) {
-      data += number_text(map.heights[static_cast<std::size_t>(j * map.nx + i)]) + " ";
+      data += number_text(map.heights[static_cast<std::size_t>(j * map.nx + i)] / pressure.scale) + " ";
     }
     data += "\n";
   }
-  const auto axis = [](const char* column, std::int64_t count, double step) {
+  const auto axis = [&](const char* column, std::int64_t count, double step) {
     return "(($" + std::string(column) + " - " + number_text(0.5 * static_cast<double>(count - 1)) + ") * " +
-           number_text(step) + ")";
+           number_text(step / length.scale) + ")";
   };
-  draw_picture(
-      folder.path() / "pressure",
-      "$data << EOD\n" + data +
-          "EOD\nset size ratio -1\nset tics out\nset xlabel 'x [m]'\n"
-          "set ylabel 'y [m]'\nset cblabel 'pressure [Pa]'\nset palette defined (0 'white', 1 'gold', 2 'red', 3 "
-          "'black')\nset autoscale fix\nset format x '%.1s %c'\nset format y '%.1s %c'\nset format cb '%.1s %c'\n"
-          "plot $data matrix using " +
-          axis("1", map.nx, map.dx) + ":" + axis("2", map.ny, map.dy) + ":3 with image notitle");
+  draw_picture(folder.path() / "pressure",
+               "$data << EOD\n" + data + "EOD\nset size ratio -1\nset tics out nomirror\nset xlabel 'x [" +
+                   length.name + "]'\nset ylabel 'y [" + length.name + "]'\nset cblabel 'pressure [" + pressure.name +
+                   "]'\nset palette defined (0 'white', 1 'gold', 2 'red', 3 'black')\nset autoscale fix\n"
+                   "plot $data matrix using " +
+                   axis("1", map.nx, map.dx) + ":" + axis("2", map.ny, map.dy) + ":3 with image notitle");
   return true;
 }
 

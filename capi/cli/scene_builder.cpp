@@ -104,7 +104,8 @@ class Builder {
       if (step.traction_ratio) fail(step.line, "[[step]]: traction_ratio" + release);
     }
     for (const auto& field : file_.output.fields) {
-      if (field_info(field).id == 0) fail(file_.output.line, "[output]: the field " + field + release);
+      if (field_info(field).id != 0) continue;
+      fail(file_.output.line, std::string("[output]: the field ").append(field).append(release));
     }
   }
 

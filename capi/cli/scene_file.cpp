@@ -71,6 +71,7 @@ const std::vector<Kind>& laws() {
 
 std::vector<std::string> names(const std::vector<Kind>& kinds) {
   std::vector<std::string> list;
+  list.reserve(kinds.size());
   for (const auto& kind : kinds) list.emplace_back(kind.name);
   return list;
 }
@@ -79,7 +80,7 @@ std::vector<std::string> names(const std::vector<Kind>& kinds) {
 std::string read_kind(TomlTable& table, const std::string& key, const std::vector<Kind>& kinds,
                       std::map<std::string, double>& numbers) {
   if (!table.has(key)) table.fail("the key " + key + " is missing");
-  const std::string name = *table.choice(key, names(kinds));
+  std::string name = *table.choice(key, names(kinds));
   for (const auto& kind : kinds) {
     if (kind.name != name) continue;
     for (const auto& number : kind.numbers) {

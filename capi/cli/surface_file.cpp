@@ -94,7 +94,7 @@ HeightMap read_surface(const std::filesystem::path& path, const SurfaceOptions& 
     fail_file(file, "none of its " + std::to_string(raw.heights.size()) + " heights is valid");
   }
   refuse_missing(file, raw);
-  for (double& height : raw.heights) height *= scale;
+  for (double& height : raw.heights) height = in_metres(height, scale);
   return {raw.nx, raw.ny, raw.dx, raw.dy, std::move(raw.heights)};
 }
 

@@ -17,6 +17,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "base/function_ref.h"
 #include "fft/convolution.h"
@@ -31,10 +32,11 @@ class Carrier {
   virtual Method method() const = 0;
   virtual std::int64_t padded_nx() const = 0;
   virtual std::int64_t padded_ny() const = 0;
-  virtual std::int64_t blocks() const = 0;        // tasks of the column pass
-  virtual std::size_t field_size() const = 0;     // of the transformed rows, in Reals
-  virtual std::size_t scratch_size() const = 0;   // of one task, in Reals
-  virtual std::size_t spectrum_size() const = 0;  // in Reals
+  virtual std::int64_t blocks() const = 0;         // tasks of the column pass
+  virtual std::size_t field_size() const = 0;      // of the transformed rows, in Reals
+  virtual std::size_t scratch_size() const = 0;    // of one task, in Reals
+  virtual std::size_t transform_size() const = 0;  // of a source transformed in x and y, in Reals
+  virtual std::size_t spectrum_size() const = 0;   // in Reals
 
   /// The part of a stored spectrum that belongs to one block, from value(mx, my): the kernel's real transform at
   /// frequencies (mx + 1/4)/n_x, (my + 1/4)/n_y on a free boundary, mx/nx, my/ny (all of them, not only a half) on
@@ -46,6 +48,10 @@ class Carrier {
                             Real* scratch) const = 0;
   virtual void convolve_block(std::int64_t block, const Spectrum<Real>& spectrum, Real* field,
                               Real* scratch) const = 0;
+  /// The halves of convolve_block apart: forward from the field, and a sum of products backward to the field.
+  virtual void transform_block(std::int64_t block, const Real* field, Real* transform, Real* scratch) const = 0;
+  virtual void sum_block(std::int64_t block, std::span<const Term<Real>> terms, Real* field, Real* scratch) const = 0;
+
   virtual void rows_backward(std::int64_t begin, std::int64_t end, Real* field, Real* result,
                              Real* scratch) const = 0;
 };

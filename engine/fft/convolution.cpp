@@ -1,5 +1,9 @@
 #include "fft/convolution.h"
 
+#if defined(__linux__)
+#include <sys/mman.h>
+#endif
+
 #include <algorithm>
 #include <string>
 #include <utility>
@@ -23,6 +27,16 @@ std::int64_t rows_of_a_task(std::int64_t nx) {
   return std::max<std::int64_t>(1, 32768 / nx);
 }
 
+/// Rows are spread over the whole field: with small pages every store would be another page's. A mere wish.
+void prefer_large_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes) {
+#if defined(__linux__)
+  constexpr std::uintptr_t page = 4096;
+  const auto first = (reinterpret_cast<std::uintptr_t>(memory) + page - 1) / page * page;
+  const auto end = (reinterpret_cast<std::uintptr_t>(memory) + bytes) / page * page;
+  if (first < end) madvise(reinterpret_cast<void*>(first), end - first, MADV_HUGEPAGE);
+#endif
+}
+
 }  // namespace
 
 template <class Real>
@@ -39,6 +53,41 @@ struct Convolution<Real>::Implementation {
       for (std::int64_t block = begin; block < end; ++block) carrier->arrange(block, value, spectrum.values.data());
     });
     return spectrum;
+  }
+
+  void check(const Spectrum<Real>& spectrum) const {
+    if (spectrum.values.size() != carrier->spectrum_size()) {
+      fail(Status::invalid_argument, "the spectrum was made for a convolution of another size");
+    }
+  }
+  void check(const Workspace<Real>& workspace) const {
+    if (workspace.field.size() != carrier->field_size() || workspace.scratch_size != carrier->scratch_size() ||
+        workspace.scratch.size() < workspace.scratch_size * static_cast<std::size_t>(backend.arena.threads())) {
+      fail(Status::invalid_argument,
+           "the workspace was made for a convolution of another size or another number of threads");
+    }
+  }
+
+  static Real* scratch_of(Workspace<Real>& workspace, int slot) {
+    return workspace.scratch.data() + static_cast<std::size_t>(slot) * workspace.scratch_size;
+  }
+
+  void rows_forward(const Real* source, Workspace<Real>& workspace) const {
+    backend.arena.for_chunks(ny, rows_of_a_task(nx), [&](std::int64_t begin, std::int64_t end, int slot) {
+      carrier->rows_forward(begin, end, source, workspace.field.data(), scratch_of(workspace, slot));
+    });
+  }
+  void rows_backward(Real* result, Workspace<Real>& workspace) const {
+    backend.arena.for_chunks(ny, rows_of_a_task(nx), [&](std::int64_t begin, std::int64_t end, int slot) {
+      carrier->rows_backward(begin, end, workspace.field.data(), result, scratch_of(workspace, slot));
+    });
+  }
+  /// A small grid's columns are one task as its rows are.
+  void for_blocks(Workspace<Real>& workspace, FunctionRef<void(std::int64_t block, Real* scratch)> body) const {
+    const std::int64_t blocks = ny <= rows_of_a_task(nx) ? carrier->blocks() : 1;
+    backend.arena.for_chunks(carrier->blocks(), blocks, [&](std::int64_t begin, std::int64_t end, int slot) {
+      for (std::int64_t block = begin; block < end; ++block) body(block, scratch_of(workspace, slot));
+    });
   }
 };
 
@@ -122,38 +171,60 @@ Spectrum<Real> Convolution<Real>::spectrum_of_symbol(
 template <class Real>
 std::unique_ptr<Workspace<Real>> Convolution<Real>::workspace() const {
   const Implementation& my = *implementation_;
-  const std::size_t scratch_size = my.carrier->scratch_size();
-  const auto threads = static_cast<std::size_t>(my.backend.arena.threads());
-  return std::make_unique<Workspace<Real>>(
-      Workspace<Real>{Buffer<Real>(my.carrier->field_size()), Buffer<Real>(scratch_size * threads), scratch_size});
+  auto workspace = std::make_unique<Workspace<Real>>();
+  workspace->field = Buffer<Real>::uninitialised(my.carrier->field_size());
+  prefer_large_pages(workspace->field.data(), workspace->field.bytes());
+  std::fill(workspace->field.begin(), workspace->field.end(), Real{0});
+  workspace->scratch_size = my.carrier->scratch_size();
+  workspace->scratch = Buffer<Real>(workspace->scratch_size * static_cast<std::size_t>(my.backend.arena.threads()));
+  return workspace;
+}
+
+template <class Real>
+std::size_t Convolution<Real>::transform_bytes() const {
+  return Buffer<Real>::padded_bytes(implementation_->carrier->transform_size());
 }
 
 template <class Real>
 void Convolution<Real>::apply(const Spectrum<Real>& spectrum, const Real* source, Real* result,
                               Workspace<Real>& workspace) const {
   const Implementation& my = *implementation_;
-  const Carrier<Real>& carrier = *my.carrier;
-  if (spectrum.values.size() != carrier.spectrum_size() || workspace.field.size() != carrier.field_size()) {
-    fail(Status::invalid_argument, "the spectrum or workspace was made for a convolution of another size");
-  }
-  Real* field = workspace.field.data();
-  const auto scratch = [&](int slot) {
-    return workspace.scratch.data() + static_cast<std::size_t>(slot) * workspace.scratch_size;
-  };
-  const std::int64_t rows = rows_of_a_task(my.nx);
-  my.backend.arena.for_chunks(my.ny, rows, [&](std::int64_t begin, std::int64_t end, int slot) {
-    carrier.rows_forward(begin, end, source, field, scratch(slot));
+  my.check(spectrum);
+  my.check(workspace);
+  my.rows_forward(source, workspace);
+  my.for_blocks(workspace, [&](std::int64_t block, Real* scratch) {
+    my.carrier->convolve_block(block, spectrum, workspace.field.data(), scratch);
   });
-  // A small grid's columns are one task as its rows are.
-  const std::int64_t blocks = my.ny <= rows ? carrier.blocks() : 1;
-  my.backend.arena.for_chunks(carrier.blocks(), blocks, [&](std::int64_t begin, std::int64_t end, int slot) {
-    for (std::int64_t block = begin; block < end; ++block) {
-      carrier.convolve_block(block, spectrum, field, scratch(slot));
+  my.rows_backward(result, workspace);
+}
+
+template <class Real>
+SourceTransform<Real> Convolution<Real>::transform(const Real* source, Workspace<Real>& workspace) const {
+  const Implementation& my = *implementation_;
+  my.check(workspace);
+  SourceTransform<Real> transform{Buffer<Real>::uninitialised(my.carrier->transform_size())};
+  my.rows_forward(source, workspace);
+  my.for_blocks(workspace, [&](std::int64_t block, Real* scratch) {
+    my.carrier->transform_block(block, workspace.field.data(), transform.values.data(), scratch);
+  });
+  return transform;
+}
+
+template <class Real>
+void Convolution<Real>::apply(std::span<const Term<Real>> terms, Real* result, Workspace<Real>& workspace) const {
+  const Implementation& my = *implementation_;
+  if (terms.empty()) fail(Status::invalid_argument, "a sum of convolutions needs at least one term, not 0");
+  for (const Term<Real>& term : terms) {
+    my.check(*term.spectrum);
+    if (term.source->values.size() != my.carrier->transform_size()) {
+      fail(Status::invalid_argument, "the transformed source was made for a convolution of another size");
     }
+  }
+  my.check(workspace);
+  my.for_blocks(workspace, [&](std::int64_t block, Real* scratch) {
+    my.carrier->sum_block(block, terms, workspace.field.data(), scratch);
   });
-  my.backend.arena.for_chunks(my.ny, rows, [&](std::int64_t begin, std::int64_t end, int slot) {
-    carrier.rows_backward(begin, end, field, result, scratch(slot));
-  });
+  my.rows_backward(result, workspace);
 }
 
 template class Convolution<double>;

@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 
 #include "base/buffer.h"
 #include "base/function_ref.h"
@@ -55,6 +56,19 @@ struct Workspace {
   std::size_t scratch_size = 0;  // of one part, in Reals
 };
 
+/// A source in frequency space, to be convolved with many kernels; made by Convolution::transform.
+template <class Real>
+struct SourceTransform {
+  Buffer<Real> values;  // layout: private to the Convolution
+};
+
+/// kernel * source, with both transformed.
+template <class Real>
+struct Term {
+  const SourceTransform<Real>* source;
+  const Spectrum<Real>* spectrum;
+};
+
 template <class Real>
 class Convolution {
  public:
@@ -84,6 +98,12 @@ class Convolution {
   /// source and result: nx·ny values, row-major; they may be the same array. Threads of the arena share the work;
   /// the bits do not depend on their number.
   void apply(const Spectrum<Real>& spectrum, const Real* source, Real* result, Workspace<Real>& workspace) const;
+
+  /// apply in two halves, for several kernels on one source or sums over several sources: every source is transformed
+  /// once, and result = Σ_t kernel_t * source_t costs one transform however many terms there are (at least one).
+  SourceTransform<Real> transform(const Real* source, Workspace<Real>& workspace) const;
+  void apply(std::span<const Term<Real>> terms, Real* result, Workspace<Real>& workspace) const;
+  std::size_t transform_bytes() const;  // of one SourceTransform
 
  private:
   struct Implementation;

@@ -1,8 +1,9 @@
-// Eight columns at a time are gathered into contiguous sequences, stay in cache through forward transform, product
-// and backward transform, and are scattered back:
+// Columns lie in the field in blocks of as many as fill a cache line. The columns of a block are gathered into
+// contiguous sequences, stay in cache through forward transform, product and backward transform, and are scattered
+// back:
 //
-//   field [row j][column: re, im]   --gather-->   scratch [column][re sequence, im sequence][j: complex]   (free)
-//                                                 scratch [column][j: complex]                             (periodic)
+//   field [block][row j][column: re, im]  -->  scratch [column][re sequence, im sequence][j: complex]   (free)
+//                                              scratch [column][j: complex]                             (periodic)
 #include "fft/fftw_carrier.h"
 
 #include <algorithm>
@@ -17,12 +18,45 @@ namespace brinell::fft {
 
 namespace {
 
-constexpr std::int64_t kColumns = 8;  // gathered at a time: a cache line's worth in single precision, two in double
+template <class Real>
+constexpr std::int64_t kColumns = static_cast<std::int64_t>(kAlignment / (2 * sizeof(Real)));  // of a block
 
-/// Sequences of 2n Reals, set apart so that equal places of neighbours do not fall into the same cache set.
+/// Length of arrays that follow each other, so that equal places of neighbours do not fall into the same cache set.
 std::int64_t set_apart(std::int64_t reals) {
   return (reals + 15) / 16 * 16 + 16;
 }
+
+/// The field's blocks, in Reals.
+template <class Real>
+struct Blocks {
+  Blocks(std::int64_t columns_, std::int64_t ny)
+      : columns(columns_),
+        count((columns + kColumns<Real> - 1) / kColumns<Real>),
+        stride(set_apart(2 * kColumns<Real> * ny)) {}
+
+  std::int64_t first(std::int64_t block) const { return block * kColumns<Real>; }
+  std::int64_t last(std::int64_t block) const { return std::min(first(block + 1), columns); }
+  std::size_t size() const { return static_cast<std::size_t>(stride * count); }
+  /// Reals of one row in a transform's output, rounded up to whole blocks.
+  std::int64_t row() const { return 2 * kColumns<Real> * count; }
+
+  /// Row j to and from the blocks.
+  void scatter_row(const Real* row, std::int64_t j, Real* field) const {
+    for (std::int64_t block = 0; block < count; ++block) {
+      std::copy_n(row + block * kWidth, kWidth, field + block * stride + j * kWidth);
+    }
+  }
+  void gather_row(const Real* field, std::int64_t j, Real* row) const {
+    for (std::int64_t block = 0; block < count; ++block) {
+      const Real* part = field + block * stride + j * kWidth;
+      __builtin_prefetch(part + 4 * kWidth, 0, 2);  // far from each other: out of reach of the hardware's fetching
+      std::copy_n(part, kWidth, row + block * kWidth);
+    }
+  }
+
+  static constexpr std::int64_t kWidth = 2 * kColumns<Real>;
+  std::int64_t columns, count, stride;
+};
 
 /// exp(−2πi j / 4n), j < n: interleaved.
 template <class Real>
@@ -42,107 +76,153 @@ class FreeByFftw final : public Carrier<Real> {
   FreeByFftw(PlanCache& plans, std::int64_t nx, std::int64_t ny)
       : nx_(nx),
         ny_(ny),
-        padded_nx_(good_size(nx)),
-        padded_ny_(good_size(ny)),
-        row_stride_(set_apart(2 * padded_nx_)),
-        sequence_stride_(set_apart(2 * padded_ny_)),
-        turn_x_(quarter_turn<Real>(padded_nx_)),
-        turn_y_(quarter_turn<Real>(padded_ny_)),
-        forward_x_(plans.transform<Real>(Kind::complex_forward, padded_nx_)),
-        backward_x_(plans.transform<Real>(Kind::complex_backward, padded_nx_)),
-        forward_y_(plans.transform<Real>(Kind::complex_forward, padded_ny_)),
-        backward_y_(plans.transform<Real>(Kind::complex_backward, padded_ny_)) {}
+        length_x_(good_size(nx)),
+        length_y_(good_size(ny)),
+        blocks_(length_x_, ny),
+        row_(set_apart(blocks_.row())),
+        sequence_(set_apart(2 * length_y_)),
+        turn_x_(quarter_turn<Real>(length_x_)),
+        turn_y_(quarter_turn<Real>(length_y_)),
+        forward_x_(plans.transform<Real>(Kind::complex_forward, length_x_)),
+        backward_x_(plans.transform<Real>(Kind::complex_backward, length_x_)),
+        forward_y_(plans.transform<Real>(Kind::complex_forward, length_y_)),
+        backward_y_(plans.transform<Real>(Kind::complex_backward, length_y_)) {}
 
   Method method() const override { return Method::fftw; }
-  std::int64_t padded_nx() const override { return 2 * padded_nx_; }
-  std::int64_t padded_ny() const override { return 2 * padded_ny_; }
-  std::int64_t blocks() const override { return (padded_nx_ + kColumns - 1) / kColumns; }
-  std::size_t field_size() const override { return static_cast<std::size_t>(row_stride_ * ny_); }
-  std::size_t scratch_size() const override { return static_cast<std::size_t>(sequence_stride_ * 2 * kColumns); }
-  std::size_t spectrum_size() const override { return static_cast<std::size_t>(padded_nx_ * padded_ny_); }
+  std::int64_t padded_nx() const override { return 2 * length_x_; }
+  std::int64_t padded_ny() const override { return 2 * length_y_; }
+  std::int64_t blocks() const override { return blocks_.count; }
+  std::size_t field_size() const override { return blocks_.size(); }
+  std::size_t scratch_size() const override {
+    return static_cast<std::size_t>(std::max(2 * row_, (2 * kColumns<Real> + 1) * sequence_));
+  }
+  std::size_t spectrum_size() const override { return static_cast<std::size_t>(length_x_ * length_y_); }
+  std::size_t transform_size() const override { return static_cast<std::size_t>(length_x_ * 2 * sequence_); }
 
   void arrange(std::int64_t block, FunctionRef<double(std::int64_t, std::int64_t)> value,
                Real* spectrum) const override {
-    for (std::int64_t mx = block * kColumns; mx < last_column(block); ++mx) {
-      for (std::int64_t my = 0; my < padded_ny_; ++my) {
-        spectrum[mx * padded_ny_ + my] = static_cast<Real>(value(mx, my));
+    for (std::int64_t mx = blocks_.first(block); mx < blocks_.last(block); ++mx) {
+      for (std::int64_t my = 0; my < length_y_; ++my) {
+        spectrum[mx * length_y_ + my] = static_cast<Real>(value(mx, my));
       }
     }
   }
 
-  void rows_forward(std::int64_t begin, std::int64_t end, const Real* source, Real* field, Real*) const override {
+  void rows_forward(std::int64_t begin, std::int64_t end, const Real* source, Real* field,
+                    Real* scratch) const override {
+    Real* row = scratch;
+    Real* transformed = scratch + row_;
+    std::fill(row + 2 * nx_, row + 2 * length_x_, Real{0});
     for (std::int64_t j = begin; j < end; ++j) {
-      Real* row = field + j * row_stride_;
       const Real* values = source + j * nx_;
       for (std::int64_t i = 0; i < nx_; ++i) {
         row[2 * i] = values[i] * turn_x_[2 * i];
         row[2 * i + 1] = values[i] * turn_x_[2 * i + 1];
       }
-      std::fill(row + 2 * nx_, row + 2 * padded_nx_, Real{0});
-      forward_x_(row);
+      forward_x_(row, transformed);
+      blocks_.scatter_row(transformed, j, field);
     }
   }
 
-  void rows_backward(std::int64_t begin, std::int64_t end, Real* field, Real* result, Real*) const override {
+  void rows_backward(std::int64_t begin, std::int64_t end, Real* field, Real* result, Real* scratch) const override {
+    Real* row = scratch;
+    Real* transformed = scratch + row_;
     for (std::int64_t j = begin; j < end; ++j) {
-      Real* row = field + j * row_stride_;
-      backward_x_(row);
+      blocks_.gather_row(field, j, row);
+      backward_x_(row, transformed);
       Real* values = result + j * nx_;
       for (std::int64_t i = 0; i < nx_; ++i) {
-        values[i] = row[2 * i] * turn_x_[2 * i] + row[2 * i + 1] * turn_x_[2 * i + 1];
+        values[i] = transformed[2 * i] * turn_x_[2 * i] + transformed[2 * i + 1] * turn_x_[2 * i + 1];
       }
     }
   }
 
   void convolve_block(std::int64_t block, const Spectrum<Real>& spectrum, Real* field, Real* scratch) const override {
-    const std::int64_t first = block * kColumns;
-    const std::int64_t columns = last_column(block) - first;
-    gather(field + 2 * first, columns, scratch);
+    const std::int64_t first = blocks_.first(block);
+    const std::int64_t columns = blocks_.last(block) - first;
+    Real* place = field + block * blocks_.stride;
+    Real* sequences = scratch + sequence_;
+    gather(place, columns, sequences);
     for (std::int64_t c = 0; c < columns; ++c) {
-      const Real* values = spectrum.values.data() + (first + c) * padded_ny_;
+      const Real* values = spectrum.values.data() + (first + c) * length_y_;
       for (int part = 0; part < 2; ++part) {
-        Real* sequence = scratch + (2 * c + part) * sequence_stride_;
-        forward_y_(sequence);
-        multiply(values, spectrum.parity_y, sequence);
-        backward_y_(sequence);
+        Real* sequence = sequences + (2 * c + part) * sequence_;
+        forward_y_(sequence, scratch);
+        multiply(values, spectrum.parity_y, scratch);
+        backward_y_(scratch, sequence);
       }
     }
     // A kernel odd in x carries a factor −i, by which (re, im) becomes (im, −re).
     if (spectrum.parity_x == Parity::even) {
-      scatter(scratch, 0, 1, columns, field + 2 * first);
+      scatter(sequences, 0, 1, columns, place);
     } else {
-      scatter(scratch, 1, -1, columns, field + 2 * first);
+      scatter(sequences, 1, -1, columns, place);
     }
   }
 
- private:
-  std::int64_t last_column(std::int64_t block) const { return std::min((block + 1) * kColumns, padded_nx_); }
+  void transform_block(std::int64_t block, const Real* field, Real* transform, Real* scratch) const override {
+    const std::int64_t first = blocks_.first(block);
+    const std::int64_t columns = blocks_.last(block) - first;
+    gather(field + block * blocks_.stride, columns, scratch);
+    for (std::int64_t s = 0; s < 2 * columns; ++s) {
+      forward_y_(scratch + s * sequence_, transform + (2 * first + s) * sequence_);
+    }
+  }
 
-  void gather(const Real* field, std::int64_t columns, Real* scratch) const {
+  void sum_block(std::int64_t block, std::span<const Term<Real>> terms, Real* field, Real* scratch) const override {
+    const std::int64_t first = blocks_.first(block);
+    const std::int64_t columns = blocks_.last(block) - first;
+    Real* sequences = scratch + sequence_;
+    for (std::int64_t s = 0; s < 2 * columns; ++s) {
+      std::fill(scratch, scratch + 2 * length_y_, Real{0});
+      for (const Term<Real>& term : terms) {
+        const bool turn_x = term.spectrum->parity_x == Parity::odd;
+        const std::int64_t from = turn_x ? s ^ 1 : s;
+        const Real sign = turn_x && s % 2 == 1 ? Real{-1} : Real{1};
+        add_product(term.spectrum->values.data() + (first + s / 2) * length_y_, term.spectrum->parity_y, sign,
+                    term.source->values.data() + (2 * first + from) * sequence_, scratch);
+      }
+      backward_y_(scratch, sequences + s * sequence_);
+    }
+    scatter(sequences, 0, 1, columns, field + block * blocks_.stride);
+  }
+
+ private:
+  void add_product(const Real* values, Parity parity_y, Real sign, const Real* sequence, Real* sum) const {
+    for (std::int64_t m = 0; m < length_y_; ++m) {
+      const Real factor = sign * values[m];
+      const Real re = factor * sequence[2 * m];
+      const Real im = factor * sequence[2 * m + 1];
+      sum[2 * m] += parity_y == Parity::even ? re : im;
+      sum[2 * m + 1] += parity_y == Parity::even ? im : -re;
+    }
+  }
+
+  void gather(const Real* block, std::int64_t columns, Real* sequences) const {
     for (std::int64_t j = 0; j < ny_; ++j) {
-      const Real* row = field + j * row_stride_;
+      const Real* row = block + j * Blocks<Real>::kWidth;
       const Real cosine = turn_y_[2 * j];
       const Real sine = turn_y_[2 * j + 1];
-      Real* place = scratch + 2 * j;
-      for (std::int64_t c = 0; c < 2 * columns; ++c, place += sequence_stride_) {
+      Real* place = sequences + 2 * j;
+      for (std::int64_t c = 0; c < 2 * columns; ++c, place += sequence_) {
         place[0] = row[c] * cosine;
         place[1] = row[c] * sine;
       }
     }
     for (std::int64_t c = 0; c < 2 * columns; ++c) {
-      Real* sequence = scratch + c * sequence_stride_;
-      std::fill(sequence + 2 * ny_, sequence + 2 * padded_ny_, Real{0});
+      Real* sequence = sequences + c * sequence_;
+      std::fill(sequence + 2 * ny_, sequence + 2 * length_y_, Real{0});
     }
   }
 
   void multiply(const Real* values, Parity parity_y, Real* sequence) const {
     if (parity_y == Parity::even) {
-      for (std::int64_t m = 0; m < padded_ny_; ++m) {
+      for (std::int64_t m = 0; m < length_y_; ++m) {
         sequence[2 * m] *= values[m];
         sequence[2 * m + 1] *= values[m];
       }
     } else {
-      for (std::int64_t m = 0; m < padded_ny_; ++m) {
+      for (std::int64_t m = 0; m < length_y_; ++m) {
         const Real real = sequence[2 * m];
         sequence[2 * m] = values[m] * sequence[2 * m + 1];
         sequence[2 * m + 1] = -values[m] * real;
@@ -151,15 +231,15 @@ class FreeByFftw final : public Carrier<Real> {
   }
 
   /// Real part of each column from the sequence 2·column + swap, imaginary part from the other one, times sign.
-  void scatter(const Real* scratch, int swap, Real sign, std::int64_t columns, Real* field) const {
+  void scatter(const Real* sequences, int swap, Real sign, std::int64_t columns, Real* block) const {
     for (std::int64_t j = 0; j < ny_; ++j) {
-      Real* row = field + j * row_stride_;
+      Real* row = block + j * Blocks<Real>::kWidth;
       const Real cosine = turn_y_[2 * j];
       const Real sine = turn_y_[2 * j + 1];
-      const Real* place = scratch + 2 * j;
-      for (std::int64_t c = 0; c < columns; ++c, place += 2 * sequence_stride_) {
-        const Real* real = place + swap * sequence_stride_;
-        const Real* imaginary = place + (1 - swap) * sequence_stride_;
+      const Real* place = sequences + 2 * j;
+      for (std::int64_t c = 0; c < columns; ++c, place += 2 * sequence_) {
+        const Real* real = place + swap * sequence_;
+        const Real* imaginary = place + (1 - swap) * sequence_;
         row[2 * c] = real[0] * cosine + real[1] * sine;
         row[2 * c + 1] = sign * (imaginary[0] * cosine + imaginary[1] * sine);
       }
@@ -167,9 +247,9 @@ class FreeByFftw final : public Carrier<Real> {
   }
 
   std::int64_t nx_, ny_;
-  std::int64_t padded_nx_, padded_ny_;  // n of the half-integer transforms
-  std::int64_t row_stride_;             // of the field, in Reals
-  std::int64_t sequence_stride_;        // of the scratch, in Reals
+  std::int64_t length_x_, length_y_;  // of the half-integer transforms
+  Blocks<Real> blocks_;
+  std::int64_t row_, sequence_;  // of the scratch, in Reals
   Buffer<Real> turn_x_, turn_y_;
   Transform<Real> forward_x_, backward_x_, forward_y_, backward_y_;
 };
@@ -180,10 +260,10 @@ class PeriodicByFftw final : public Carrier<Real> {
   PeriodicByFftw(PlanCache& plans, std::int64_t nx, std::int64_t ny)
       : nx_(nx),
         ny_(ny),
-        columns_(nx / 2 + 1),
         half_ny_(ny / 2 + 1),
-        row_stride_(set_apart(2 * columns_)),
-        sequence_stride_(set_apart(2 * ny)),
+        blocks_(nx / 2 + 1, ny),
+        row_(set_apart(blocks_.row())),
+        sequence_(set_apart(2 * ny)),
         forward_x_(plans.transform<Real>(Kind::real_to_complex, nx)),
         backward_x_(plans.transform<Real>(Kind::complex_to_real, nx)),
         forward_y_(plans.transform<Real>(Kind::complex_forward, ny)),
@@ -192,65 +272,100 @@ class PeriodicByFftw final : public Carrier<Real> {
   Method method() const override { return Method::fftw; }
   std::int64_t padded_nx() const override { return nx_; }
   std::int64_t padded_ny() const override { return ny_; }
-  std::int64_t blocks() const override { return (columns_ + kColumns - 1) / kColumns; }
-  std::size_t field_size() const override { return static_cast<std::size_t>(row_stride_ * ny_); }
-  std::size_t scratch_size() const override { return static_cast<std::size_t>(sequence_stride_ * kColumns); }
-  std::size_t spectrum_size() const override { return static_cast<std::size_t>(columns_ * half_ny_); }
+  std::int64_t blocks() const override { return blocks_.count; }
+  std::size_t field_size() const override { return blocks_.size(); }
+  std::size_t scratch_size() const override {
+    return static_cast<std::size_t>(std::max(2 * row_, (kColumns<Real> + 1) * sequence_));
+  }
+  std::size_t spectrum_size() const override { return static_cast<std::size_t>(blocks_.columns * half_ny_); }
+  std::size_t transform_size() const override { return static_cast<std::size_t>(blocks_.columns * sequence_); }
 
   void arrange(std::int64_t block, FunctionRef<double(std::int64_t, std::int64_t)> value,
                Real* spectrum) const override {
-    for (std::int64_t mx = block * kColumns; mx < last_column(block); ++mx) {
+    for (std::int64_t mx = blocks_.first(block); mx < blocks_.last(block); ++mx) {
       for (std::int64_t my = 0; my < half_ny_; ++my) {
         spectrum[mx * half_ny_ + my] = static_cast<Real>(value(mx, my));
       }
     }
   }
 
-  void rows_forward(std::int64_t begin, std::int64_t end, const Real* source, Real* field, Real*) const override {
+  void rows_forward(std::int64_t begin, std::int64_t end, const Real* source, Real* field,
+                    Real* scratch) const override {
     for (std::int64_t j = begin; j < end; ++j) {
-      Real* row = field + j * row_stride_;
-      std::copy(source + j * nx_, source + (j + 1) * nx_, row);
-      forward_x_(row);
+      std::copy(source + j * nx_, source + (j + 1) * nx_, scratch);
+      forward_x_(scratch, scratch + row_);
+      blocks_.scatter_row(scratch + row_, j, field);
     }
   }
 
-  void rows_backward(std::int64_t begin, std::int64_t end, Real* field, Real* result, Real*) const override {
+  void rows_backward(std::int64_t begin, std::int64_t end, Real* field, Real* result, Real* scratch) const override {
     for (std::int64_t j = begin; j < end; ++j) {
-      Real* row = field + j * row_stride_;
-      backward_x_(row);
-      std::copy(row, row + nx_, result + j * nx_);
+      blocks_.gather_row(field, j, scratch);
+      backward_x_(scratch, scratch + row_);
+      std::copy(scratch + row_, scratch + row_ + nx_, result + j * nx_);
     }
   }
 
   void convolve_block(std::int64_t block, const Spectrum<Real>& spectrum, Real* field, Real* scratch) const override {
-    const std::int64_t first = block * kColumns;
-    const std::int64_t columns = last_column(block) - first;
-    for (std::int64_t j = 0; j < ny_; ++j) {
-      const Real* row = field + j * row_stride_ + 2 * first;
-      Real* place = scratch + 2 * j;
-      for (std::int64_t c = 0; c < columns; ++c, place += sequence_stride_) {
-        place[0] = row[2 * c];
-        place[1] = row[2 * c + 1];
-      }
-    }
+    const std::int64_t first = blocks_.first(block);
+    const std::int64_t columns = blocks_.last(block) - first;
+    Real* const rows = field + block * blocks_.stride;
+    Real* const sequences = scratch + sequence_;
+    gather(rows, columns, sequences);
     for (std::int64_t c = 0; c < columns; ++c) {
-      Real* sequence = scratch + c * sequence_stride_;
-      forward_y_(sequence);
-      multiply(spectrum.values.data() + (first + c) * half_ny_, sequence);
-      backward_y_(sequence);
+      Real* sequence = sequences + c * sequence_;
+      forward_y_(sequence, scratch);
+      multiply(spectrum.values.data() + (first + c) * half_ny_, scratch);
+      backward_y_(scratch, sequence);
     }
-    for (std::int64_t j = 0; j < ny_; ++j) {
-      Real* row = field + j * row_stride_ + 2 * first;
-      const Real* place = scratch + 2 * j;
-      for (std::int64_t c = 0; c < columns; ++c, place += sequence_stride_) {
-        row[2 * c] = place[0];
-        row[2 * c + 1] = place[1];
-      }
+    scatter(sequences, columns, rows);
+  }
+
+  void transform_block(std::int64_t block, const Real* field, Real* transform, Real* scratch) const override {
+    const std::int64_t first = blocks_.first(block);
+    const std::int64_t columns = blocks_.last(block) - first;
+    gather(field + block * blocks_.stride, columns, scratch);
+    for (std::int64_t c = 0; c < columns; ++c) {
+      forward_y_(scratch + c * sequence_, transform + (first + c) * sequence_);
     }
   }
 
+  void sum_block(std::int64_t block, std::span<const Term<Real>> terms, Real* field, Real* scratch) const override {
+    const std::int64_t first = blocks_.first(block);
+    const std::int64_t columns = blocks_.last(block) - first;
+    Real* const sequences = scratch + sequence_;
+    for (std::int64_t c = 0; c < columns; ++c) {
+      std::fill(scratch, scratch + 2 * ny_, Real{0});
+      for (const Term<Real>& term : terms) {
+        const Real* values = term.spectrum->values.data() + (first + c) * half_ny_;
+        const Real* source = term.source->values.data() + (first + c) * sequence_;
+        for (std::int64_t m = 0; m < ny_; ++m) {
+          const Real value = values[std::min(m, ny_ - m)];
+          scratch[2 * m] += value * source[2 * m];
+          scratch[2 * m + 1] += value * source[2 * m + 1];
+        }
+      }
+      backward_y_(scratch, sequences + c * sequence_);
+    }
+    scatter(sequences, columns, field + block * blocks_.stride);
+  }
+
  private:
-  std::int64_t last_column(std::int64_t block) const { return std::min((block + 1) * kColumns, columns_); }
+  void gather(const Real* block, std::int64_t columns, Real* sequences) const {
+    for (std::int64_t j = 0; j < ny_; ++j) {
+      const Real* row = block + j * Blocks<Real>::kWidth;
+      Real* place = sequences + 2 * j;
+      for (std::int64_t c = 0; c < columns; ++c, place += sequence_) std::copy_n(row + 2 * c, 2, place);
+    }
+  }
+
+  void scatter(const Real* sequences, std::int64_t columns, Real* block) const {
+    for (std::int64_t j = 0; j < ny_; ++j) {
+      Real* row = block + j * Blocks<Real>::kWidth;
+      const Real* place = sequences + 2 * j;
+      for (std::int64_t c = 0; c < columns; ++c, place += sequence_) std::copy_n(place, 2, row + 2 * c);
+    }
+  }
 
   void multiply(const Real* values, Real* sequence) const {
     for (std::int64_t m = 0; m < half_ny_; ++m) {
@@ -264,9 +379,9 @@ class PeriodicByFftw final : public Carrier<Real> {
   }
 
   std::int64_t nx_, ny_;
-  std::int64_t columns_, half_ny_;  // independent frequencies in x and y
-  std::int64_t row_stride_;         // of the field, in Reals
-  std::int64_t sequence_stride_;    // of the scratch, in Reals
+  std::int64_t half_ny_;  // independent frequencies in y
+  Blocks<Real> blocks_;
+  std::int64_t row_, sequence_;  // of the scratch, in Reals
   Transform<Real> forward_x_, backward_x_, forward_y_, backward_y_;
 };
 

@@ -36,26 +36,31 @@ KernelTransform::KernelTransform(const Backend& backend, const double* kernel, s
   const double scale = 1.0 / (static_cast<double>(n_x) * static_cast<double>(n_y));
 
   // Rows are transformed and written transposed, so that the columns lie contiguous.
-  const std::int64_t row_stride = (n_x + 7) / 8 * 8 + 8;
-  const std::int64_t rows_size = kRows * row_stride;
-  Buffer<double> scratch(static_cast<std::size_t>(rows_size * backend.arena.threads()));
+  const std::int64_t sequence = (std::max(n_x, n_y) + 7) / 8 * 8 + 8;
+  const std::int64_t scratch_size = (kRows + 1) * sequence;
+  Buffer<double> scratch(static_cast<std::size_t>(scratch_size * backend.arena.threads()));
   backend.arena.for_chunks(ny - skip_y, kRows, [&](std::int64_t begin, std::int64_t end, int slot) {
-    double* rows = scratch.data() + slot * rows_size;
+    double* row = scratch.data() + slot * scratch_size;
+    double* transformed = row + sequence;
     for (std::int64_t j = begin; j < end; ++j) {
-      double* row = rows + (j - begin) * row_stride;
       const double* offsets = kernel + (j + skip_y) * nx;
       std::copy(offsets + skip_x, offsets + nx, row);
       std::fill(row + nx - skip_x, row + n_x, 0.0);
-      along_x(row);
+      along_x(row, transformed + (j - begin) * sequence);
     }
     for (std::int64_t k = 0; k < n_x; ++k) {
       for (std::int64_t j = begin; j < end; ++j) {
-        values_[static_cast<std::size_t>(k * stride_ + j)] = scale * rows[(j - begin) * row_stride + k];
+        values_[static_cast<std::size_t>(k * stride_ + j)] = scale * transformed[(j - begin) * sequence + k];
       }
     }
   });
-  backend.arena.for_chunks(n_x, kRows, [&](std::int64_t begin, std::int64_t end, int) {
-    for (std::int64_t k = begin; k < end; ++k) along_y(values_.data() + k * stride_);
+  backend.arena.for_chunks(n_x, kRows, [&](std::int64_t begin, std::int64_t end, int slot) {
+    double* column = scratch.data() + slot * scratch_size;
+    for (std::int64_t k = begin; k < end; ++k) {
+      double* values = values_.data() + k * stride_;
+      std::copy(values, values + n_y, column);
+      along_y(column, values);
+    }
   });
 }
 

@@ -11,8 +11,11 @@ namespace brinell::fft {
 
 namespace {
 
-/// Positions after the last whole group of lanes are finished one by one, which costs about this much each.
-constexpr double kRestCost = 8;
+/// Positions after the last whole group of lanes are finished one by one: such a position costs about as much more
+/// as this many whole blocks.
+double cost_of_rest(std::int64_t positions, std::int64_t lanes) {
+  return 0.25 * static_cast<double>(lanes) * static_cast<double>(positions % lanes);
+}
 
 /// The length >= n (in units of `unit`) whose transform costs least; the best is never far above n.
 template <class Cost>
@@ -29,6 +32,9 @@ std::int64_t cheapest_length(std::int64_t n, const Cost& cost) {
   }
   return best;
 }
+
+/// Fields larger than this do not survive in a shared last-level cache until they are read again.
+constexpr std::size_t kStaysInCache = std::size_t{6} << 20;
 
 /// One of the frequencies in x, and how often it counts (a pair of conjugates is kept once).
 struct Frequency {
@@ -52,6 +58,7 @@ class ByLanes final : public Carrier<Real> {
     lane_stage();
     // Blocks are set apart so that equal rows of neighbours do not fall into the same cache set.
     rows_.block_stride = ny * 2 * lanes_ + static_cast<std::int64_t>(2 * kAlignment / sizeof(Real));
+    rows_.past_caches = field_size() * sizeof(Real) > kStaysInCache;
     columns_.ny = ny;
     columns_.tree = tree_y_.view();
   }
@@ -62,9 +69,11 @@ class ByLanes final : public Carrier<Real> {
   std::int64_t blocks() const override { return rows_.positions; }
   std::size_t field_size() const override { return static_cast<std::size_t>(rows_.block_stride * blocks()); }
   std::size_t scratch_size() const override {
-    return static_cast<std::size_t>(std::max(4 * rows_.length + 4 * lanes_, 2 * lanes_ * (length_y_ + 1)));
+    return static_cast<std::size_t>(std::max(4 * rows_.length + 4 * lanes_, 2 * lanes_ * length_y_));
   }
   std::size_t spectrum_size() const override { return static_cast<std::size_t>(blocks() * length_y_ * lanes_); }
+
+  std::size_t transform_size() const override { return static_cast<std::size_t>(blocks() * transform_of_block()); }
 
   void arrange(std::int64_t block, FunctionRef<double(std::int64_t, std::int64_t)> value,
                Real* spectrum) const override {
@@ -102,7 +111,31 @@ class ByLanes final : public Carrier<Real> {
     }
   }
 
+  void transform_block(std::int64_t block, const Real* field, Real* transform, Real*) const override {
+    const auto forward = boundary_ == Boundary::free ? kernels_.free_forward : kernels_.periodic_forward;
+    forward(columns_, field + block * rows_.block_stride, transform + block * transform_of_block());
+  }
+
+  void sum_block(std::int64_t block, std::span<const Term<Real>> terms, Real* field, Real* scratch) const override {
+    std::vector<simd::BlockTerm<Real>> products;
+    products.reserve(terms.size());
+    for (const Term<Real>& term : terms) {
+      products.push_back({term.source->values.data() + block * transform_of_block(),
+                          term.spectrum->values.data() + block * length_y_ * lanes_,
+                          term.spectrum->parity_x == Parity::odd, term.spectrum->parity_y == Parity::odd});
+    }
+    const auto count = static_cast<std::int64_t>(products.size());
+    Real* place = field + block * rows_.block_stride;
+    if (boundary_ == Boundary::free) {
+      kernels_.free_sum(columns_, products.data(), count, place, scratch);
+    } else {
+      kernels_.periodic_sum(columns_, products.data(), count, place);
+    }
+  }
+
  private:
+  std::int64_t transform_of_block() const { return (boundary_ == Boundary::free ? 2 : 1) * length_y_ * 2 * lanes_; }
+
   void add_piece(std::int64_t length, std::int64_t numerator, std::int64_t denominator) {
     trees_x_.emplace_back(length, numerator, denominator);
     rows_.tree[trees_x_.size() - 1] = trees_x_.back().view();
@@ -113,9 +146,20 @@ class ByLanes final : public Carrier<Real> {
     rows_.positions = 0;
     rows_.pieces = 0;
     if (boundary_ == Boundary::free) return add_piece(rows_.length / lanes_, 1, 4);
-    std::int64_t left = rows_.length / lanes_;
-    for (; left % 4 == 0; left /= 2) add_piece(left / 4, 1, 4);
-    add_piece(left, 0, 1);
+    const std::int64_t vectors = rows_.length / lanes_;
+    std::int64_t best = vectors;  // length of the last piece
+    double least = std::numeric_limits<double>::infinity();
+    for (std::int64_t left = vectors;; left /= 2) {
+      const std::int64_t positions = (vectors - left) / 2 + left;
+      const double cost = static_cast<double>(positions) + cost_of_rest(positions, lanes_);
+      if (cost < least) {
+        least = cost;
+        best = left;
+      }
+      if (left % 4 != 0) break;
+    }
+    for (std::int64_t left = vectors; left > best; left /= 2) add_piece(left / 4, 1, 4);
+    add_piece(best, 0, 1);
     rows_.pieces = static_cast<std::int32_t>(trees_x_.size());
   }
 
@@ -193,10 +237,13 @@ std::unique_ptr<const Carrier<Real>> lane_carrier(const simd::TransformKernels<R
     if (nx % lanes != 0 || !is_tree_length(nx / lanes) || !is_tree_length(ny)) return nullptr;
     return std::make_unique<const ByLanes<Real>>(kernels, nx, ny, nx, ny, boundary);
   }
-  const std::int64_t length_x = lanes * cheapest_length((nx + lanes - 1) / lanes, [&](std::int64_t n) {
-                                  return tree_cost(n) + kRestCost * static_cast<double>(n % lanes);
-                                });
   const std::int64_t length_y = cheapest_length(ny, tree_cost);
+  // Each vector of a row costs its part of the row's transform, and of two transforms of its block's columns.
+  const double of_columns = 2 * tree_cost(length_y) / static_cast<double>(length_y);
+  const std::int64_t length_x =
+      lanes * cheapest_length((nx + lanes - 1) / lanes, [&](std::int64_t n) {
+        return tree_cost(n) + of_columns * (static_cast<double>(n) + cost_of_rest(n, lanes));
+      });
   const double nodes = static_cast<double>(length_x) * static_cast<double>(length_y);
   const double nodes_by_fftw = static_cast<double>(good_size(nx)) * static_cast<double>(good_size(ny));
   if (must_pay && nodes > kAdvantage * nodes_by_fftw) return nullptr;

@@ -91,43 +91,44 @@ class WisdomScope {
 };
 
 template <class Real>
-typename Library<Real>::Plan make_plan(Kind kind, int n, Real* data, unsigned flags) {
+typename Library<Real>::Plan make_plan(Kind kind, int n, Real* in, Real* out, unsigned flags) {
   using Complex = typename Library<Real>::Complex;
-  auto* numbers = reinterpret_cast<Complex*>(data);
+  auto* numbers_in = reinterpret_cast<Complex*>(in);
+  auto* numbers_out = reinterpret_cast<Complex*>(out);
   switch (kind) {
-    case Kind::complex_forward: return Library<Real>::plan_complex(n, numbers, numbers, FFTW_FORWARD, flags);
-    case Kind::complex_backward: return Library<Real>::plan_complex(n, numbers, numbers, FFTW_BACKWARD, flags);
-    case Kind::real_to_complex: return Library<Real>::plan_to_complex(n, data, numbers, flags);
-    case Kind::complex_to_real: return Library<Real>::plan_to_real(n, numbers, data, flags);
-    case Kind::cosines: return Library<Real>::plan_real(n, data, data, FFTW_REDFT01, flags);
-    case Kind::sines: return Library<Real>::plan_real(n, data, data, FFTW_RODFT01, flags);
+    case Kind::complex_forward: return Library<Real>::plan_complex(n, numbers_in, numbers_out, FFTW_FORWARD, flags);
+    case Kind::complex_backward: return Library<Real>::plan_complex(n, numbers_in, numbers_out, FFTW_BACKWARD, flags);
+    case Kind::real_to_complex: return Library<Real>::plan_to_complex(n, in, numbers_out, flags);
+    case Kind::complex_to_real: return Library<Real>::plan_to_real(n, numbers_in, out, flags);
+    case Kind::cosines: return Library<Real>::plan_real(n, in, out, FFTW_REDFT01, flags);
+    case Kind::sines: return Library<Real>::plan_real(n, in, out, FFTW_RODFT01, flags);
   }
   return nullptr;
 }
 
 template <class Real>
-auto execution(Kind kind) -> void (*)(void*, Real*) {
+auto execution(Kind kind) -> void (*)(void*, Real*, Real*) {
   using Plan = typename Library<Real>::Plan;
   using Complex = typename Library<Real>::Complex;
   switch (kind) {
     case Kind::complex_forward:
     case Kind::complex_backward:
-      return [](void* plan, Real* data) {
-        auto* numbers = reinterpret_cast<Complex*>(data);
-        Library<Real>::execute_complex(static_cast<Plan>(plan), numbers, numbers);
+      return [](void* plan, Real* in, Real* out) {
+        Library<Real>::execute_complex(static_cast<Plan>(plan), reinterpret_cast<Complex*>(in),
+                                       reinterpret_cast<Complex*>(out));
       };
     case Kind::real_to_complex:
-      return [](void* plan, Real* data) {
-        Library<Real>::execute_to_complex(static_cast<Plan>(plan), data, reinterpret_cast<Complex*>(data));
+      return [](void* plan, Real* in, Real* out) {
+        Library<Real>::execute_to_complex(static_cast<Plan>(plan), in, reinterpret_cast<Complex*>(out));
       };
     case Kind::complex_to_real:
-      return [](void* plan, Real* data) {
-        Library<Real>::execute_to_real(static_cast<Plan>(plan), reinterpret_cast<Complex*>(data), data);
+      return [](void* plan, Real* in, Real* out) {
+        Library<Real>::execute_to_real(static_cast<Plan>(plan), reinterpret_cast<Complex*>(in), out);
       };
     case Kind::cosines:
     case Kind::sines: break;
   }
-  return [](void* plan, Real* data) { Library<Real>::execute_real(static_cast<Plan>(plan), data, data); };
+  return [](void* plan, Real* in, Real* out) { Library<Real>::execute_real(static_cast<Plan>(plan), in, out); };
 }
 
 }  // namespace
@@ -161,12 +162,15 @@ Transform<Real> PlanCache::transform(Kind kind, std::int64_t n) {
   const auto plan = [&] {
     const std::lock_guard planner_lock(planner_mutex());
     const WisdomScope<Real> scope(mine.wisdom);
-    const std::unique_ptr<void, void (*)(void*)> memory(
-        Library<Real>::allocate(sizeof(Real) * (2 * static_cast<std::size_t>(n) + 2)), Library<Real>::release);
+    // Room for two arrays, each aligned like those that will be transformed.
+    const std::size_t room = (2 * static_cast<std::size_t>(n) + 2 + 15) / 16 * 16;
+    const std::unique_ptr<void, void (*)(void*)> memory(Library<Real>::allocate(2 * sizeof(Real) * room),
+                                                        Library<Real>::release);
     if (memory == nullptr)
       fail(Status::out_of_memory, "no memory to plan a transform of length " + std::to_string(n));
     const unsigned flags = planning_ == Planning::measure ? FFTW_MEASURE : FFTW_ESTIMATE;
-    const auto made = make_plan(kind, static_cast<int>(n), static_cast<Real*>(memory.get()), flags);
+    auto* in = static_cast<Real*>(memory.get());
+    const auto made = make_plan(kind, static_cast<int>(n), in, in + room, flags);
     if (planning_ == Planning::measure) mine.wisdom = current_wisdom<Real>();
     return made;
   }();

@@ -17,6 +17,9 @@
 // z = 0 it gives the mean of both sides). q_y is q_x with x and y exchanged. The corner sums lose ε·d² of their
 // digits at d cells; further away the point forces of Boussinesq and Cerruti (Johnson, eqs. 3.19 and 3.76, in the
 // form that is finite on the axis) are integrated over the cell by Gauss-Legendre rules, fewer nodes with distance.
+//
+// Error: at most 1e-10 (for ν <= 0.3: 2e-13) of the largest component at the point, for cells up to 1:10. Beside
+// longer cells the corner sums keep their absolute error, a few roundings of the unit traction.
 #pragma once
 
 #include <array>

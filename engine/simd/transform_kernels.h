@@ -45,6 +45,7 @@ struct RowTransform {
   std::int64_t length;        // multiple of lanes
   std::int64_t positions;     // over all pieces
   std::int64_t block_stride;  // of the field [block][row][re, im], in Reals; one block = one vector of frequencies
+  bool past_caches;           // the field is too large to stay in cache: it is written around it
   std::int32_t pieces;        // 0: free boundary, tree[0] takes the row as it is
   TransformTree<Real> tree[kMaxPieces];
   const Real* lane_twiddles;  // [group][s = 1 … lanes−1][re, im][lane]
@@ -69,6 +70,15 @@ struct BlockProduct {
   const Real* next_spectrum;  // may be null
 };
 
+/// One term of a sum of products in one block: a transformed source and the spectrum it is multiplied with.
+template <class Real>
+struct BlockTerm {
+  const Real* transform;  // free: [part: re, im of the field][position][re, im][lane]; periodic: one such part
+  const Real* spectrum;   // [position][lane]
+  bool turn_x;            // as in BlockProduct
+  bool turn_y;
+};
+
 template <class Real>
 struct TransformKernels {
   std::int64_t lanes;
@@ -79,10 +89,19 @@ struct TransformKernels {
   void (*rows_backward)(const RowTransform<Real>& transform, std::int64_t begin, std::int64_t end, const Real* field,
                         Real* result, Real* scratch);
 
-  /// Forward, times spectrum, backward, in place on one block of the field. scratch: 2·lanes·(length + 1) Reals.
+  /// Forward, times spectrum, backward, in place on one block of the field. scratch: 2·lanes·length Reals.
   void (*free_block)(const ColumnTransform<Real>& transform, const BlockProduct<Real>& product, Real* field,
                      Real* scratch);
   void (*periodic_block)(const ColumnTransform<Real>& transform, const BlockProduct<Real>& product, Real* field);
+
+  /// The two halves apart: forward from the field to a transform as in BlockTerm; and a sum of products, backward,
+  /// to the field. The same scratch.
+  void (*free_forward)(const ColumnTransform<Real>& transform, const Real* field, Real* transformed);
+  void (*free_sum)(const ColumnTransform<Real>& transform, const BlockTerm<Real>* terms, std::int64_t count,
+                   Real* field, Real* scratch);
+  void (*periodic_forward)(const ColumnTransform<Real>& transform, const Real* field, Real* transformed);
+  void (*periodic_sum)(const ColumnTransform<Real>& transform, const BlockTerm<Real>* terms, std::int64_t count,
+                       Real* field);
 };
 
 }  // namespace brinell::simd

@@ -42,8 +42,9 @@ std::vector<Partial> gather_rows(std::int64_t nx, std::int64_t ny, const paralle
   const std::int64_t rows = rows_per_chunk(nx);
   std::vector<Partial> partials(static_cast<std::size_t>((ny + rows - 1) / rows));
   arena.for_chunks(ny, rows, [&](std::int64_t begin, std::int64_t end, int) {
-    Partial& partial = partials[static_cast<std::size_t>(begin / rows)];
+    Partial partial;
     for (std::int64_t j = begin; j < end; ++j) visit(partial, j);
+    partials[static_cast<std::size_t>(begin / rows)] = partial;
   });
   return partials;
 }

@@ -41,7 +41,8 @@ struct Direction {
 
   Direction(std::int64_t n, double spacing, double offset, double short_cutoff)
       : nodes(n), length(static_cast<double>(n) * spacing), centre(offset / length) {
-    const double in_band = std::min(length / short_cutoff * (1.0 + kSlack), static_cast<double>((n - 1) / 2));
+    const std::int64_t highest = (n - 1) / 2;
+    const double in_band = std::min(length / short_cutoff * (1.0 + kSlack), static_cast<double>(highest));
     limit = static_cast<std::int64_t>(in_band);
   }
 

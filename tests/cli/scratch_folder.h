@@ -15,7 +15,7 @@ namespace brinell::cli {
 class ScratchFolder {
  public:
   ScratchFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "brinell_XXXXXX").string();
+    std::string name = (std::filesystem::temp_directory_path() / "brinell_").string() + std::string(6, 'X');
     if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
     path_ = name;
   }

@@ -45,7 +45,7 @@ TEST(GwyddionText, states_its_size_and_unit_in_utf8_and_latin1) {
     EXPECT_EQ(map.ny, 2);
     EXPECT_DOUBLE_EQ(map.dx, 4e-6);
     EXPECT_DOUBLE_EQ(map.dy, 5e-9);
-    EXPECT_THAT(map.heights, Pointwise(DoubleEq(), {1e-8 * 1e-9, 2e-9, 3e-9, 4e-9, 5e-9, -65 * 1e-9}));
+    EXPECT_THAT(map.heights, Pointwise(DoubleEq(), {1e-8 / 1e9, 2e-9, 3e-9, 4e-9, 5e-9, -65 / 1e9}));
   }
 }
 
@@ -157,7 +157,8 @@ void expect_npy_round_trip(const std::string& type) {
         // Element (j, i) is 10 j + i; columns first in Fortran order.
         const int j = fortran ? k % 2 : k / 3;
         const int i = fortran ? k / 2 : k % 3;
-        data += stored(static_cast<Number>(10 * j + i), big);
+        const int value = 10 * j + i;
+        data += stored(static_cast<Number>(value), big);
       }
       const auto path = folder.write("map.npy", npy((big ? ">" : "<") + type, fortran, "(2, 3)", data, big ? 2 : 1));
       const HeightMap map = read_surface(path);
@@ -191,7 +192,7 @@ TEST(Npy, refuses_what_is_no_plain_map) {
 
 std::filesystem::path hdf5_map(const ScratchFolder& folder, const char* unit) {
   start_hdf5();
-  const auto path = folder.path() / "map.h5";
+  auto path = folder.path() / "map.h5";
   const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
   const hsize_t shape[] = {2, 3};
   const hsize_t two = 2;

@@ -58,7 +58,7 @@ struct X3p {
 
   static std::filesystem::path write_zip(const ScratchFolder& folder,
                                          const std::map<std::string, std::string>& members) {
-    const auto path = folder.path() / "map.x3p";
+    auto path = folder.path() / "map.x3p";
     zip_t* archive = zip_open(path.c_str(), ZIP_CREATE | ZIP_TRUNCATE, nullptr);
     for (const auto& [name, bytes] : members) {
       zip_file_add(archive, name.c_str(), zip_source_buffer(archive, bytes.data(), bytes.size(), 0), 0);

@@ -130,6 +130,116 @@ TYPED_TEST(Precision, periodic_convolution_by_lanes_is_the_direct_sum) {
   }
 }
 
+/// The two methods are independent of each other; FFTW's is the authority where direct sums take too long.
+template <class Real>
+void check_against_fftw(std::int64_t nx, std::int64_t ny, Boundary boundary, simd::Isa isa) {
+  const auto source = random_values<Real>(nx * ny, 1);
+  const auto kernel = random_values<double>(nx * ny, 2);
+  const auto symbol = [&](std::int64_t kx, std::int64_t ky) { return kernel[ky * (nx / 2 + 1) + kx]; };
+  const auto result = [&](Method method) {
+    Case<Real> with(nx, ny, boundary, method, 1, isa);
+    EXPECT_EQ(with.convolution.method(), method);
+    return with.apply(boundary == Boundary::free ? with.convolution.spectrum(kernel.data(), Parity::odd, Parity::even)
+                                                 : with.convolution.spectrum_of_symbol(symbol),
+                      source);
+  };
+  const auto by_lanes = result(Method::lanes);
+  const auto by_fftw = result(Method::fftw);
+  const std::vector<long double> expected(by_fftw.begin(), by_fftw.end());
+  const double allowed = 2 * tolerance<Real>(nx * ny, support::norm(source),
+                                             boundary == Boundary::free ? 2 * support::norm(kernel) : 1.0);
+  EXPECT_LE(support::largest_difference(by_lanes, expected), allowed)
+      << nx << " x " << ny << " " << simd::name(isa) << (boundary == Boundary::free ? " free" : " periodic");
+}
+
+/// 2^a·{1, 3, 5, 9} from 48 to 4096, and neighbours: long in one direction at a time.
+TYPED_TEST(Precision, lanes_agree_with_fftw_at_good_sizes_and_their_neighbours) {
+  std::vector<std::int64_t> sizes;
+  for (const std::int64_t odd : {1, 3, 5, 9}) {
+    for (std::int64_t size = odd; size <= 4096; size *= 2) {
+      if (size >= 48) sizes.push_back(size);
+    }
+  }
+  for (const simd::Isa isa : simd::supported()) {
+    for (const std::int64_t size : sizes) {
+      for (const std::int64_t near : {size - 1, size, size + 1}) {
+        check_against_fftw<TypeParam>(near, 3, Boundary::free, isa);
+        check_against_fftw<TypeParam>(5, near, Boundary::free, isa);
+      }
+      if (size % 16 == 0) check_against_fftw<TypeParam>(size, 4, Boundary::periodic, isa);
+      check_against_fftw<TypeParam>(16, size, Boundary::periodic, isa);
+    }
+    check_against_fftw<TypeParam>(1024, 768, Boundary::free, isa);
+    check_against_fftw<TypeParam>(1024, 1152, Boundary::periodic, isa);
+  }
+}
+
+TEST(Convolution, chooses_the_lane_transform_where_it_is_faster) {
+  const auto method = [](std::int64_t nx, std::int64_t ny, Boundary boundary) {
+    return Case<double>(nx, ny, boundary, Method::automatic).convolution.method();
+  };
+  EXPECT_EQ(method(512, 512, Boundary::free), Method::lanes);
+  EXPECT_EQ(method(509, 521, Boundary::free), Method::lanes);
+  EXPECT_EQ(method(512, 360, Boundary::periodic), Method::lanes);
+  EXPECT_EQ(method(509, 512, Boundary::periodic), Method::fftw);
+  EXPECT_EQ(method(512, 509, Boundary::periodic), Method::fftw);
+  EXPECT_THROW(Case<double>(509, 512, Boundary::periodic, Method::lanes), Error);
+}
+
+/// Two sources, each with two kernels, all four parities: the sum equals the convolutions one by one.
+template <class Real>
+void check_sum(std::int64_t nx, std::int64_t ny, Boundary boundary, Method method, simd::Isa isa) {
+  Case<Real> with(nx, ny, boundary, method, 1, isa);
+  const auto& convolution = with.convolution;
+  const auto workspace = convolution.workspace();
+  std::vector<std::vector<Real>> sources;
+  std::vector<SourceTransform<Real>> transforms;
+  std::vector<Spectrum<Real>> spectra;
+  double allowed = 0;
+  for (unsigned s = 0; s < 2; ++s) {
+    sources.push_back(random_values<Real>(nx * ny, 10 + s));
+    transforms.push_back(convolution.transform(sources.back().data(), *workspace));
+    EXPECT_EQ(transforms.back().values.bytes(), convolution.transform_bytes());
+  }
+  std::vector<Term<Real>> terms;
+  std::vector<Real> expected(nx * ny);
+  spectra.reserve(4);
+  for (const Parity parity_x : kParities) {
+    for (const Parity parity_y : kParities) {
+      const std::size_t s = spectra.size();
+      const auto kernel = random_values<double>(nx * ny, 20 + static_cast<unsigned>(s));
+      if (boundary == Boundary::free) {
+        spectra.push_back(convolution.spectrum(kernel.data(), parity_x, parity_y));
+        allowed += tolerance<Real>(nx * ny, support::norm(sources[s % 2]), 2 * support::norm(kernel));
+      } else {
+        spectra.push_back(convolution.spectrum_of_symbol(
+            [&](std::int64_t kx, std::int64_t ky) { return kernel[ky * (nx / 2 + 1) + kx]; }));
+        allowed += tolerance<Real>(nx * ny, support::norm(sources[s % 2]), 1.0);
+      }
+      terms.push_back({&transforms[s % 2], &spectra[s]});
+      const auto one = with.apply(spectra[s], sources[s % 2]);
+      for (std::size_t i = 0; i < one.size(); ++i) expected[i] += one[i];
+    }
+  }
+  std::vector<Real> result(nx * ny);
+  convolution.apply(terms, result.data(), *workspace);
+  const std::vector<long double> long_expected(expected.begin(), expected.end());
+  EXPECT_LE(support::largest_difference(result, long_expected), allowed) << nx << " x " << ny;
+}
+
+TYPED_TEST(Precision, sums_of_transformed_sources_are_sums_of_convolutions) {
+  for (const Boundary boundary : {Boundary::free, Boundary::periodic}) {
+    for (const auto& [nx, ny] : {std::pair{1, 1}, {1, 7}, {6, 1}, {13, 9}, {64, 48}, {30, 31}}) {
+      check_sum<TypeParam>(nx, ny, boundary, Method::fftw, simd::Isa::baseline);
+    }
+    for (const simd::Isa isa : simd::supported()) {
+      check_sum<TypeParam>(64, 48, boundary, Method::lanes, isa);
+      check_sum<TypeParam>(160, 1, boundary, Method::lanes, isa);
+      if (boundary == Boundary::free) check_sum<TypeParam>(13, 31, boundary, Method::lanes, isa);
+    }
+  }
+}
+
 TYPED_TEST(Precision, same_bits_for_any_number_of_threads_and_in_place) {
   using Real = TypeParam;
   const oneapi::tbb::global_control eight(oneapi::tbb::global_control::max_allowed_parallelism, 8);
@@ -188,6 +298,12 @@ TEST(Convolution, refuses_what_it_cannot_do) {
 
   const auto spectrum = free.convolution.spectrum(kernel.data(), Parity::even, Parity::even);
   Case<double> other(40, 40, Boundary::free);
+  const auto transform = free.convolution.transform(kernel.data(), *free.convolution.workspace());
+  const auto workspace = other.convolution.workspace();
+  std::vector<double> result(1600);
+  const std::vector<Term<double>> terms{{&transform, &spectrum}};
+  EXPECT_THROW(other.convolution.apply(terms, result.data(), *workspace), Error);
+  EXPECT_THROW(other.convolution.apply(std::span<const Term<double>>{}, result.data(), *workspace), Error);
   EXPECT_THROW(other.apply(spectrum, std::vector<double>(1600)), Error);
 }
 

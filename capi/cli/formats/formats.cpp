@@ -2,6 +2,7 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <fstream>
 #include <limits>
 #include <sstream>
@@ -50,6 +51,10 @@ double metres_per(std::string_view unit) {
     if (name == unit) return metres;
   }
   return std::numeric_limits<double>::quiet_NaN();
+}
+
+double in_metres(double value, double scale) {
+  return scale < 1 ? value / std::round(1 / scale) : value * scale;
 }
 
 std::size_t checked_nodes(const std::filesystem::path& path, std::int64_t nx, std::int64_t ny) {

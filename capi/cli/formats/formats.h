@@ -42,6 +42,10 @@ RawMap read_hdf5(const std::filesystem::path& path, const std::string& dataset);
 /// NaN if it is not one.
 double metres_per(std::string_view unit);
 
+/// A value in units of `scale` metres. Divides where the scale is below one, since 1e6 is a binary number and 1e-6 is
+/// not: 10 um become 1e-5 m to the last bit.
+double in_metres(double value, double scale);
+
 /// nx · ny after a check against the sizes that a height map can have.
 std::size_t checked_nodes(const std::filesystem::path& path, std::int64_t nx, std::int64_t ny);
 

@@ -75,8 +75,8 @@ RawMap read_gsf(const std::filesystem::path& path, const std::string& bytes) {
   if (!lateral.empty()) {
     const double metres = metres_per(lateral);
     if (std::isnan(metres)) fail_file(path, "XYUnits = " + lateral + ", expected a unit of length such as m");
-    if (width) map.dx = *width * metres / static_cast<double>(map.nx);
-    if (height) map.dy = *height * metres / static_cast<double>(map.ny);
+    if (width) map.dx = in_metres(*width, metres) / static_cast<double>(map.nx);
+    if (height) map.dy = in_metres(*height, metres) / static_cast<double>(map.ny);
   }
 
   const std::size_t nodes = checked_nodes(path, map.nx, map.ny);

@@ -37,7 +37,7 @@ struct Reader {
       fail_line("expected a length with its unit, for example 10.00 um, found '" + std::string(text) + "'");
     }
     const auto unit = trimmed(text.substr(blank));
-    const double metres = value * metres_per(unit);
+    const double metres = in_metres(value, metres_per(unit));
     if (!(metres > 0) || !std::isfinite(metres)) {
       fail_line("expected a positive length in m, mm, um or nm, found '" + std::string(text) + "'");
     }

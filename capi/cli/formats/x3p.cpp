@@ -53,14 +53,10 @@ class X3pFile {
     map.nx = size("SizeX");
     map.ny = size("SizeY");
     if (size("SizeZ") != 1) fail_file(path_, "SizeZ is " + text("Record3/MatrixDimension/SizeZ") + ", expected 1");
-    map.heights.resize(checked_nodes(path_, map.nx, map.ny));
+    const std::size_t nodes = checked_nodes(path_, map.nx, map.ny);
     const Axis z = axis("CZ");
     if (z.kind != 'A') fail_file(path_, "the z axis is incremental, expected absolute heights");
-    if (root_.child("Record3").child("DataLink")) {
-      read_binary(z, map.heights);
-    } else {
-      read_list(map.heights);
-    }
+    map.heights = root_.child("Record3").child("DataLink") ? read_binary(z, nodes) : read_list(nodes);
     for (double& height : map.heights) height = height * z.increment + z.offset;
     return map;
   }
@@ -126,7 +122,7 @@ class X3pFile {
     }
   }
 
-  void read_binary(const Axis& z, std::vector<double>& heights) const {
+  std::vector<double> read_binary(const Axis& z, std::size_t nodes) const {
     const bool is_short = z.data_type == 'I';
     const bool is_double = z.data_type == 'D';
     const std::size_t width = is_short ? 2 : is_double ? 8 : 4;
@@ -134,15 +130,17 @@ class X3pFile {
                             : is_double          ? load_as_double<double>
                             : z.data_type == 'F' ? load_as_double<float>
                                                  : load_as_double<std::int32_t>;
-    const std::string bytes = linked("PointDataLink", "MD5ChecksumPointData", heights.size() * width);
+    const std::string bytes = linked("PointDataLink", "MD5ChecksumPointData", nodes * width);
+    std::vector<double> heights(nodes);
     for (std::size_t k = 0; k < heights.size(); ++k) {
       heights[k] = load(bytes.data() + k * width, std::endian::little);
     }
-    if (text("Record3/DataLink/ValidPointsLink").empty()) return;
+    if (text("Record3/DataLink/ValidPointsLink").empty()) return heights;
     const std::string valid = linked("ValidPointsLink", "MD5ChecksumValidPoints", (heights.size() + 7) / 8);
     for (std::size_t k = 0; k < heights.size(); ++k) {
       if ((valid[k / 8] >> (k % 8) & 1) == 0) heights[k] = std::numeric_limits<double>::quiet_NaN();
     }
+    return heights;
   }
 
   /// A verified member of exactly the expected size.
@@ -159,23 +157,23 @@ class X3pFile {
   }
 
   /// Heights inside main.xml: one <Datum> a point, the height after its last semicolon; empty if missing.
-  void read_list(std::vector<double>& heights) const {
-    std::size_t count = 0;
+  std::vector<double> read_list(std::size_t nodes) const {
+    std::vector<double> heights;
     for (const auto datum : root_.child("Record3").child("DataList").children("Datum")) {
       std::string_view value = trimmed(datum.child_value());
       value = trimmed(value.substr(value.rfind(';') + 1));
       double height = std::numeric_limits<double>::quiet_NaN();
       if (!value.empty() && !parse_number(value, height)) {
-        fail_file(path_,
-                  "main.xml: Datum " + std::to_string(count) + " is '" + std::string(value) + "', expected a number");
+        fail_file(path_, "main.xml: Datum " + std::to_string(heights.size()) + " is '" + std::string(value) +
+                             "', expected a number");
       }
-      if (count < heights.size()) heights[count] = height;
-      ++count;
+      heights.push_back(height);
     }
-    if (count != heights.size()) {
+    if (heights.size() != nodes) {
       fail_file(path_,
-                "main.xml holds " + std::to_string(count) + " points, expected " + std::to_string(heights.size()));
+                "main.xml holds " + std::to_string(heights.size()) + " points, expected " + std::to_string(nodes));
     }
+    return heights;
   }
 
   const std::filesystem::path& path_;

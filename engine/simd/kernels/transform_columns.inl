@@ -77,46 +77,68 @@ void convolve_nodes(const TransformTree<Real>& tree, std::int32_t stage, std::in
   });
 }
 
-/// The first stage of a real sequence, rows `stride` Reals apart, of which `ny` are given and the rest are zero.
-template <class Arch, std::size_t R, class Real>
-void split_real(const Real* rows, std::int64_t stride, std::int64_t ny, std::int64_t h, const Real* twiddles, Real* z,
-                const Real* zeros) {
-  using V = Batch<Arch, Real>;
-  constexpr std::int64_t lanes = kLanes<Arch, Real>;
-  for (std::int64_t j = 0; j < h; ++j) {
-    Complex<V> x[R];
-    unrolled<R>([&](auto s) __attribute__((always_inline)) {
-      const std::int64_t row = j + static_cast<std::int64_t>(s) * h;
-      const V value = V::load_unaligned(row < ny ? rows + row * stride : zeros);
-      if constexpr (s == 0) {
-        x[s] = {value, V(Real{0})};
-      } else {
-        x[s] = {value * V(twiddles[2 * s - 2]), value * V(twiddles[2 * s - 1])};
-      }
-    });
-    dft<-1>(x);
-    store_parts(x, z + j * 2 * lanes, h * 2 * lanes);
-  }
+/// One step of the first stage of a real sequence: part s lies `part` Reals after part s − 1. Only the first `given`
+/// parts are there, the rest is zero.
+template <class V, std::size_t R, bool all, class Real>
+[[gnu::always_inline]] inline void split_real_step(const Real* row, std::int64_t part, std::int64_t given,
+                                                   const Real* twiddles, Real* z, std::int64_t z_part) {
+  Complex<V> x[R];
+  unrolled<R>([&](auto s) __attribute__((always_inline)) {
+    const bool there = all || static_cast<std::int64_t>(s) < given;
+    const V value = there ? V::load_unaligned(row + static_cast<std::int64_t>(s) * part) : V(Real{0});
+    if constexpr (s == 0) {
+      x[s] = {value, V(Real{0})};
+    } else {
+      x[s] = {value * V(twiddles[2 * s - 2]), value * V(twiddles[2 * s - 1])};
+    }
+  });
+  dft<-1>(x);
+  store_parts(x, z, z_part);
 }
 /// The reverse, of which only the real part of the given rows is wanted.
+template <class V, std::size_t R, bool all, class Real>
+[[gnu::always_inline]] inline void join_real_step(Real* row, std::int64_t part, std::int64_t given,
+                                                  const Real* twiddles, const Real* z, std::int64_t z_part) {
+  Complex<V> x[R];
+  load_parts(x, z, z_part);
+  dft<1>(x);
+  unrolled<R>([&](auto s) __attribute__((always_inline)) {
+    if (!all && static_cast<std::int64_t>(s) >= given) return;
+    Real* place = row + static_cast<std::int64_t>(s) * part;
+    if constexpr (s == 0) {
+      x[s].re.store_unaligned(place);
+    } else {
+      (x[s].re * V(twiddles[2 * s - 2]) + x[s].im * V(twiddles[2 * s - 1])).store_unaligned(place);
+    }
+  });
+}
+
+/// The first stage of a real sequence of R·h rows, `stride` Reals apart, of which the first `ny` are given.
+template <class Arch, std::size_t R, class Real>
+void split_real(const Real* rows, std::int64_t stride, std::int64_t ny, std::int64_t h, const Real* twiddles,
+                Real* z) {
+  using V = Batch<Arch, Real>;
+  constexpr std::int64_t step = 2 * kLanes<Arch, Real>;
+  const std::int64_t all = ny - static_cast<std::int64_t>(R - 1) * h;  // steps with every part given
+  std::int64_t j = 0;
+  for (; j < all; ++j)
+    split_real_step<V, R, true>(rows + j * stride, h * stride, R, twiddles, z + j * step, h * step);
+  for (; j < h; ++j) {
+    split_real_step<V, R, false>(rows + j * stride, h * stride, (ny - j + h - 1) / h, twiddles, z + j * step,
+                                 h * step);
+  }
+}
 template <class Arch, std::size_t R, class Real>
 void join_real(Real* rows, std::int64_t stride, std::int64_t ny, std::int64_t h, const Real* twiddles,
                const Real* z) {
   using V = Batch<Arch, Real>;
-  constexpr std::int64_t lanes = kLanes<Arch, Real>;
-  for (std::int64_t j = 0; j < h; ++j) {
-    Complex<V> x[R];
-    load_parts(x, z + j * 2 * lanes, h * 2 * lanes);
-    dft<1>(x);
-    unrolled<R>([&](auto s) __attribute__((always_inline)) {
-      const std::int64_t row = j + static_cast<std::int64_t>(s) * h;
-      if (row >= ny) return;
-      if constexpr (s == 0) {
-        x[s].re.store_unaligned(rows + row * stride);
-      } else {
-        (x[s].re * V(twiddles[2 * s - 2]) + x[s].im * V(twiddles[2 * s - 1])).store_unaligned(rows + row * stride);
-      }
-    });
+  constexpr std::int64_t step = 2 * kLanes<Arch, Real>;
+  const std::int64_t all = ny - static_cast<std::int64_t>(R - 1) * h;
+  std::int64_t j = 0;
+  for (; j < all; ++j) join_real_step<V, R, true>(rows + j * stride, h * stride, R, twiddles, z + j * step, h * step);
+  for (; j < h; ++j) {
+    join_real_step<V, R, false>(rows + j * stride, h * stride, (ny - j + h - 1) / h, twiddles, z + j * step,
+                                h * step);
   }
 }
 
@@ -130,15 +152,12 @@ void convolve_real(const TransformTree<Real>& tree, std::int64_t ny, Real* rows,
     (turn ? V(Real{0}) : value * V::load_aligned(spectrum)).store_aligned(rows);
     return;
   }
-  Real* zeros = scratch;
-  V(Real{0}).store_aligned(zeros);
-  Real* z = scratch + 2 * lanes;
   with_radix(tree.radix[0], [&](auto radix) {
     constexpr std::int64_t R = radix;
     const std::int64_t h = tree.length / R;
-    split_real<Arch, R>(rows, 2 * lanes, ny, h, tree.twiddles[0], z, zeros);
-    convolve_nodes<Arch, turn>(tree, 1, 0, R, h, z, spectrum, prefetch);
-    join_real<Arch, R>(rows, 2 * lanes, ny, h, tree.twiddles[0], z);
+    split_real<Arch, R>(rows, 2 * lanes, ny, h, tree.twiddles[0], scratch);
+    convolve_nodes<Arch, turn>(tree, 1, 0, R, h, scratch, spectrum, prefetch);
+    join_real<Arch, R>(rows, 2 * lanes, ny, h, tree.twiddles[0], scratch);
   });
 }
 

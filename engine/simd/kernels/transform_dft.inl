@@ -132,9 +132,8 @@ template <int sign, std::size_t R, class V>
     x[6] = even[3];
     x[1] = {sum02.re + root * sum13.re, sum02.im + root * sum13.im};
     x[5] = {sum02.re - root * sum13.re, sum02.im - root * sum13.im};
-    const Complex<V> side = turned<sign>(difference13);
-    x[3] = {difference02.re + root * side.re, difference02.im + root * side.im};
-    x[7] = {difference02.re - root * side.re, difference02.im - root * side.im};
+    x[3] = plus_turned<sign>(difference02, {root * difference13.re, root * difference13.im});
+    x[7] = plus_turned<-sign>(difference02, {root * difference13.re, root * difference13.im});
   } else {
     static_assert(R == 16);
     const V one = constant<V>(0.92387953251128675613), three = constant<V>(0.38268343236508977173);

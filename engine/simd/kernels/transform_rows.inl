@@ -10,6 +10,30 @@
 namespace brinell::simd {
 namespace {
 
+/// Stores past the caches, where the registers of one complex vector fill whole cache lines.
+template <std::size_t R, class V, class Real>
+[[gnu::always_inline]] inline void stream_parts(const Complex<V> (&x)[R], Real* z, std::int64_t stride) {
+  unrolled<R>([&](auto s) __attribute__((always_inline)) {
+    Real* part = z + static_cast<std::int64_t>(s) * stride;
+#if defined(__AVX512F__)
+    _mm512_stream_si512(reinterpret_cast<__m512i*>(part), __m512i(typename V::register_type(x[s].re)));
+    _mm512_stream_si512(reinterpret_cast<__m512i*>(part + V::size), __m512i(typename V::register_type(x[s].im)));
+#elif defined(__AVX2__)
+    _mm256_stream_si256(reinterpret_cast<__m256i*>(part), __m256i(typename V::register_type(x[s].re)));
+    _mm256_stream_si256(reinterpret_cast<__m256i*>(part + V::size), __m256i(typename V::register_type(x[s].im)));
+#else
+    store(part, x[s]);
+#endif
+  });
+}
+
+/// Makes what was streamed visible to other threads.
+inline void finish_streams() {
+#if defined(__AVX2__)
+  _mm_sfence();
+#endif
+}
+
 /// The last stage, of radix `lanes`: z -> row j of every block. `field` points to the row in block 0.
 template <class Arch, class Real>
 void lanes_forward(const RowTransform<Real>& transform, const Real* z, Real* field) {
@@ -26,7 +50,11 @@ void lanes_forward(const RowTransform<Real>& transform, const Real* z, Real* fie
       x[s + 1] = times(x[s + 1], w.re, w.im);
     });
     dft<-1>(x);
-    store_parts(x, field, transform.block_stride);
+    if (transform.past_caches) {
+      stream_parts(x, field, transform.block_stride);
+    } else {
+      store_parts(x, field, transform.block_stride);
+    }
     z += 2 * lanes * lanes;
     twiddles += 2 * lanes * (lanes - 1);
     field += lanes * transform.block_stride;
@@ -49,6 +77,18 @@ void lanes_forward(const RowTransform<Real>& transform, const Real* z, Real* fie
   }
 }
 
+/// Fetches the same group of a row to come into the second-level cache: its parts lie far apart, out of reach of the
+/// hardware's prefetching.
+template <class Arch, class Real>
+[[gnu::always_inline]] inline void fetch_ahead(const RowTransform<Real>& transform, const Real* field) {
+  constexpr std::int64_t step = 2 * kLanes<Arch, Real>;
+  constexpr std::int64_t rows_ahead = 3;
+  for (std::int64_t t = 0; t < kLanes<Arch, Real>; ++t) {
+    const char* part = reinterpret_cast<const char*>(field + t * transform.block_stride + rows_ahead * step);
+    for (std::size_t byte = 0; byte < step * sizeof(Real); byte += 64) __builtin_prefetch(part + byte, 0, 2);
+  }
+}
+
 template <class Arch, class Real>
 void lanes_backward(const RowTransform<Real>& transform, const Real* field, Real* z) {
   using V = Batch<Arch, Real>;
@@ -58,6 +98,7 @@ void lanes_backward(const RowTransform<Real>& transform, const Real* field, Real
   for (std::int64_t group = 0; group < groups; ++group) {
     Complex<V> x[lanes];
     load_parts(x, field, transform.block_stride);
+    fetch_ahead<Arch>(transform, field);
     dft<1>(x);
     unrolled<lanes - 1>([&](auto s) __attribute__((always_inline)) {
       const Complex<V> w = load<V>(twiddles + static_cast<std::int64_t>(s) * 2 * lanes);
@@ -96,7 +137,7 @@ void tree_of_reals_forward(const TransformTree<Real>& tree, const Real* row, Rea
   with_radix(tree.radix[0], [&](auto radix) {
     constexpr std::int64_t R = radix;
     const std::int64_t h = tree.length / R;
-    split_real<Arch, R>(row, lanes, tree.length, h, tree.twiddles[0], z, row);
+    split_real<Arch, R>(row, lanes, tree.length, h, tree.twiddles[0], z);
     for (std::int64_t t = 0; t < R; ++t) tree_forward<Arch>(tree, 1, t, h, z + t * h * 2 * lanes);
   });
 }
@@ -187,6 +228,7 @@ void rows_forward(const RowTransform<Real>& transform, std::int64_t begin, std::
     }
     lanes_forward<Arch>(transform, z, field + j * 2 * lanes);
   }
+  if (transform.past_caches) finish_streams();
 }
 
 template <class Arch, class Real>

@@ -14,9 +14,22 @@ using Batch = xsimd::batch<Real, Arch>;
 template <class Arch, class Real>
 inline constexpr std::int64_t kLanes = static_cast<std::int64_t>(Batch<Arch, Real>::size);
 
+/// Makes the compiler keep a value in a register, where gcc would rather load it anew for each of its uses.
+template <class Register>
+[[gnu::always_inline]] inline void keep(Register& value) {
+#if defined(__x86_64__)
+  asm("" : "+v"(value));
+#else
+  static_cast<void>(value);
+#endif
+}
+
 template <class V, class Real>
 [[gnu::always_inline]] inline Complex<V> load(const Real* z) {
-  return {V::load_aligned(z), V::load_aligned(z + V::size)};
+  typename V::register_type re = V::load_aligned(z), im = V::load_aligned(z + V::size);
+  keep(re);
+  keep(im);
+  return {V(re), V(im)};
 }
 template <class V, class Real>
 [[gnu::always_inline]] inline void store(Real* z, const Complex<V>& value) {
