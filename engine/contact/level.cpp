@@ -15,6 +15,8 @@ namespace {
 constexpr double kSeed = 1e-30;
 // Tension is clipped when the displacement that it could cause exceeds this fraction of the present error.
 constexpr double kTensionToError = 0.2;
+// Errors above this are all the same: the set of nodes in contact is not yet known.
+constexpr double kLargeError = 0.05;
 // The preconditioner follows the contact when this fraction of its nodes has changed.
 constexpr double kAdaptAfter = 0.02;
 // Conjugacy is given up when one iteration changes this fraction of the nodes in contact.
@@ -125,8 +127,9 @@ LevelResult Level<Real>::solve(Drive drive, double target, double tolerance, std
       if (result.converged || stalled || result.iterations >= max_iterations || in_contact == 0) return result;
     } else {
       const double error = std::max(certificate.penetration, certificate.complementarity);
-      const bool overdue = certificate.tension > kTensionToError * error || error <= tolerance ||
-                           residual.barred > kTensionToError * error * displacement_;
+      const double allowed = kTensionToError * std::min(error, kLargeError);
+      const bool overdue =
+          certificate.tension > allowed || error <= tolerance || residual.barred > allowed * displacement_;
       if (overdue || result.iterations >= max_iterations) {
         refresh(result);
         fresh = true;
