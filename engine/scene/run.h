@@ -65,6 +65,7 @@ class Run {
   Run(Engine& engine, const Scene& scene);
 
   const Plan& plan() const { return plan_; }
+  double tolerance() const { return scene_.solver().tolerance; }
   std::int32_t total() const { return total_increments(scene_.steps()); }
   const std::vector<Increment>& increments() const { return increments_; }
   const std::vector<TracePoint>& trace() const { return trace_; }
