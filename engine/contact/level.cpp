@@ -128,8 +128,9 @@ LevelResult Level<Real>::solve(Drive drive, double target, double tolerance, std
     } else {
       const double error = std::max(certificate.penetration, certificate.complementarity);
       const double allowed = kTensionToError * std::min(error, kLargeError);
-      const bool overdue =
-          certificate.tension > allowed || error <= tolerance || residual.barred > allowed * displacement_;
+      const bool outgrown = certificate.penetration >= 1;  // the displacement that it is relative to, by far
+      const bool overdue = outgrown || certificate.tension > allowed || error <= tolerance ||
+                           residual.barred > allowed * displacement_;
       if (overdue || result.iterations >= max_iterations) {
         refresh(result);
         fresh = true;
