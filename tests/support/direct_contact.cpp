@@ -168,6 +168,8 @@ contact::Certificate certificate_by_sums(const Grid& grid, Boundary boundary, co
     total += p[n];
     tension = std::max(tension, -p[n]);
   }
+  const double mean_pressure = static_cast<double>(total / static_cast<Real>(p.size()));
+  largest = std::max(largest, mean_pressure * influence::Displacement(grid.dx, grid.dy)(0, 0));
   contact::Certificate certificate;
   certificate.penetration = penetration / largest;
   certificate.complementarity = static_cast<double>(complementarity / (total * largest));
