@@ -25,6 +25,10 @@ constexpr double kRestartAfter = 0.05;
 constexpr int kRises = 3;
 // Iterations without a better certificate until the level is given up: round-off has been reached.
 constexpr int kPatience = 150;
+// The error is believed down to this fraction of that of the last fresh convolution: what the updates of the
+// displacement, in Real, can keep.
+template <class Real>
+constexpr double kBelieved = 64 * std::numeric_limits<Real>::epsilon();
 
 }  // namespace
 
@@ -55,7 +59,8 @@ void Level<Real>::refresh(LevelResult& result) {
   ++result.convolutions;
   const simd::RefreshSums fresh = passes_.refresh(scale_, gap_, fields_.p, fields_.g);
   sums_ = {fresh.active, fresh.gap, fresh.min_gap, 0};
-  displacement_ = fresh.displacement;
+  const double mean_pressure = total_ / static_cast<double>(grid_.nodes());
+  displacement_ = std::max(fresh.displacement, self_compliance_ * mean_pressure);
   energy_ = fresh.energy - (drive_ == Drive::approach ? target_ * total_ : 0);
 }
 
@@ -100,6 +105,7 @@ LevelResult Level<Real>::solve(Drive drive, double target, double tolerance, std
   double since_adapted = 0;  // and since the preconditioner was adapted
   double last_energy = std::numeric_limits<double>::infinity();
   double best = std::numeric_limits<double>::infinity();
+  double fresh_error = best;  // as of the last fresh convolution
   double in_contact = sums_.active;
 
   while (true) {
@@ -120,17 +126,20 @@ LevelResult Level<Real>::solve(Drive drive, double target, double tolerance, std
       result.total = total_;
       result.certificate = certificate;
       result.converged = certificate.worst() <= tolerance;
-      const bool stalled = ++idle > kPatience;
+      fresh_error = certificate.worst();
+      ++idle;
       if (certificate.worst() < best) {
         best = certificate.worst();
         idle = 0;
       }
-      if (result.converged || stalled || result.iterations >= max_iterations || in_contact == 0) return result;
+      if (result.converged || idle > kPatience || result.iterations >= max_iterations || in_contact == 0) return result;
     } else {
       const double error = std::max(certificate.penetration, certificate.complementarity);
       const double allowed = kTensionToError * std::min(error, kLargeError);
-      const bool overdue =
-          certificate.tension > allowed || error <= tolerance || residual.barred > allowed * displacement_;
+      const bool outgrown = certificate.penetration >= 1;  // the displacement that it is relative to, by far
+      const bool overdue = outgrown || certificate.tension > allowed || idle > kPatience ||
+                           error <= std::max(tolerance, kBelieved<Real> * fresh_error) ||
+                           residual.barred > allowed * displacement_;
       if (overdue || result.iterations >= max_iterations) {
         refresh(result);
         fresh = true;
