@@ -39,11 +39,12 @@ enum class Parity : std::int32_t { even = 0, odd = 1 };
 /// Which transform carries a convolution. automatic: the faster one for the size.
 enum class Method : std::int32_t { automatic = 0, lanes = 1, fftw = 2 };
 
-/// The spectrum of one kernel, ready for the Convolution that made it (and every other of equal geometry).
+/// The spectrum of one kernel, ready for the Convolution that made it, and for every other of equal geometry, method
+/// and instruction set.
 /// Immutable: may be shared between threads.
 template <class Real>
 struct Spectrum {
-  Buffer<Real> values;  // layout: private to the Convolution
+  Buffer<Real> values;  // layout: private to the Convolution; depends on its method and instruction set
   Parity parity_x = Parity::even;
   Parity parity_y = Parity::even;
 };
