@@ -102,7 +102,7 @@ class ByLanes final : public Carrier<Real> {
     const bool last = block + 1 == blocks();
     const Real* values = spectrum.values.data() + block * length_y_ * lanes_;
     Real* place = field + block * rows_.block_stride;
-    const simd::BlockProduct<Real> product{values, spectrum.parity_x == Parity::odd, spectrum.parity_y == Parity::odd,
+    const simd::BlockProduct<Real> product{values, turn_x(spectrum), turn_y(spectrum),
                                            last ? nullptr : place + rows_.block_stride,
                                            last ? nullptr : values + length_y_ * lanes_};
     if (boundary_ == Boundary::free) {
@@ -122,8 +122,8 @@ class ByLanes final : public Carrier<Real> {
     products.reserve(terms.size());
     for (const Term<Real>& term : terms) {
       products.push_back({term.source->values.data() + block * transform_of_block(),
-                          term.spectrum->values.data() + block * length_y_ * lanes_,
-                          term.spectrum->parity_x == Parity::odd, term.spectrum->parity_y == Parity::odd});
+                          term.spectrum->values.data() + block * length_y_ * lanes_, turn_x(*term.spectrum),
+                          turn_y(*term.spectrum)});
     }
     const auto count = static_cast<std::int64_t>(products.size());
     Real* place = field + block * rows_.block_stride;
@@ -136,6 +136,14 @@ class ByLanes final : public Carrier<Real> {
 
  private:
   std::int64_t transform_of_block() const { return (boundary_ == Boundary::free ? 2 : 1) * length_y_ * 2 * lanes_; }
+
+  /// On a periodic boundary the complex numbers of both transforms are the same.
+  bool turn_x(const Spectrum<Real>& spectrum) const {
+    return boundary_ == Boundary::free && spectrum.parity_x == Parity::odd;
+  }
+  bool turn_y(const Spectrum<Real>& spectrum) const {
+    return boundary_ == Boundary::free ? spectrum.parity_y == Parity::odd : spectrum.parity_x != spectrum.parity_y;
+  }
 
   void add_piece(std::int64_t length, std::int64_t numerator, std::int64_t denominator) {
     trees_x_.emplace_back(length, numerator, denominator);

@@ -65,7 +65,7 @@ template <class Real>
 struct BlockProduct {
   const Real* spectrum;       // [position][lane]
   bool turn_x;                // times −i in the complex numbers of the x transform (kernel odd in x)
-  bool turn_y;                // times −i in those of the y transform (kernel odd in y)
+  bool turn_y;                // times −i in those of the y transform (kernel odd in y); periodic: in the only ones
   const Real* next_field;     // may be null
   const Real* next_spectrum;  // may be null
 };
