@@ -84,7 +84,7 @@ struct Convolution<Real>::Implementation {
     }
   }
   void check(const Workspace<Real>& workspace) const {
-    if (workspace.field.size() != carrier->field_size() || workspace.scratch_size != carrier->scratch_size() ||
+    if (workspace.field.size() < carrier->field_size() || workspace.scratch_size < carrier->scratch_size() ||
         workspace.scratch.size() < workspace.scratch_size * static_cast<std::size_t>(backend.arena.threads())) {
       fail(Status::invalid_argument,
            "the workspace was made for a convolution of another size or another number of threads");
@@ -207,14 +207,23 @@ Spectrum<Real> Convolution<Real>::spectrum_of_symbol(FunctionRef<double(std::int
 
 template <class Real>
 std::unique_ptr<Workspace<Real>> Convolution<Real>::workspace() const {
-  const Implementation& my = *implementation_;
   auto workspace = std::make_unique<Workspace<Real>>();
-  workspace->field = Buffer<Real>::uninitialised(my.carrier->field_size());
-  prefer_large_pages(workspace->field.data(), workspace->field.bytes());
-  std::fill(workspace->field.begin(), workspace->field.end(), Real{0});
-  workspace->scratch_size = my.carrier->scratch_size();
-  workspace->scratch = Buffer<Real>(workspace->scratch_size * static_cast<std::size_t>(my.backend.arena.threads()));
+  enlarge(*workspace);
   return workspace;
+}
+
+template <class Real>
+void Convolution<Real>::enlarge(Workspace<Real>& workspace) const {
+  const Implementation& my = *implementation_;
+  if (workspace.field.size() < my.carrier->field_size()) {
+    workspace.field = {};
+    workspace.field = Buffer<Real>::uninitialised(my.carrier->field_size());
+    prefer_large_pages(workspace.field.data(), workspace.field.bytes());
+    std::fill(workspace.field.begin(), workspace.field.end(), Real{0});
+  }
+  workspace.scratch_size = std::max(workspace.scratch_size, my.carrier->scratch_size());
+  const std::size_t scratch = workspace.scratch_size * static_cast<std::size_t>(my.backend.arena.threads());
+  if (workspace.scratch.size() < scratch) workspace.scratch = Buffer<Real>(scratch);
 }
 
 template <class Real>

@@ -99,6 +99,9 @@ class Convolution {
 
   std::unique_ptr<Workspace<Real>> workspace() const;
 
+  /// Makes a workspace of another convolution serve this one as well: convolutions that take turns share one.
+  void enlarge(Workspace<Real>& workspace) const;
+
   /// source and result: nx·ny values, row-major; they may be the same array. Threads of the arena share the work;
   /// the bits do not depend on their number.
   void apply(const Spectrum<Real>& spectrum, const Real* source, Real* result, Workspace<Real>& workspace) const;
