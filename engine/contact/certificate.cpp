@@ -37,7 +37,7 @@ Certified certify(const parallel::Arena& arena, const Compliance<double>& compli
                   double target) {
   compliance.apply(p, g);
   const simd::RefreshSums fresh = passes.refresh(gap, p, g);
-  const double approach = drive == Drive::force && fresh.active > 0 ? fresh.gap / fresh.active : target;
+  const double approach = drive == Drive::force && fresh.load > 0 ? fresh.gap / fresh.load : target;
   const auto sums = ordered_sum<PressureSums>(
       arena, static_cast<std::int64_t>(nodes), 1 << 14,
       [](PressureSums& total, const PressureSums& part) {

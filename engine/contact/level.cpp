@@ -73,7 +73,7 @@ void Level<Real>::refresh(LevelResult& result) {
   exact_.apply(fields_.p, fields_.g);
   ++result.convolutions;
   const simd::RefreshSums fresh = passes_.refresh(gap_, fields_.p, fields_.g);
-  sums_ = {fresh.active, fresh.gap, fresh.min_gap, 0};
+  sums_ = {fresh.active, fresh.load, fresh.gap, fresh.min_gap, 0};
   const double mean_pressure = total_ / static_cast<double>(grid_.nodes());
   displacement_ = std::max(fresh.displacement, self_compliance_ * mean_pressure);
   energy_ = fresh.energy - (drive_ == Drive::approach ? target_ * total_ : 0);
@@ -90,7 +90,7 @@ template <class Real>
 void Level<Real>::correct_start(Drive drive, double target) {
   const simd::RefreshSums start = passes_.refresh(gap_, fields_.p, fields_.g);
   if (start.active == 0) return;
-  const double approach = drive == Drive::force ? start.gap / start.active : target;
+  const double approach = drive == Drive::force ? start.gap / start.load : target;
   passes_.residual(approach, 0, fields_.p, fields_.g, z_.data());
   preconditioner_.apply_local(z_.data());
   const double mean = drive == Drive::force ? passes_.sum(fields_.p, z_.data()) / start.active : 0;
@@ -124,8 +124,8 @@ LevelResult Level<Real>::solve(Drive drive, double target, double tolerance, std
   double in_contact = sums_.active;
 
   while (true) {
-    if (drive == Drive::approach || sums_.active > 0) {
-      approach_ = drive == Drive::force ? sums_.gap / sums_.active : target;
+    if (drive == Drive::approach || sums_.load > 0) {
+      approach_ = drive == Drive::force ? sums_.gap / sums_.load : target;
     }
     const double seed = kSeed * std::max(total_ / nodes, std::numeric_limits<double>::min() / kSeed);
     simd::ResidualSums residual = passes_.residual(approach_, seed, fields_.p, fields_.g, z_.data());

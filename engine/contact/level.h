@@ -4,7 +4,8 @@
 // changes (E. A. H. Vollebregt, "The bound-constrained conjugate gradient method for non-negative matrices", 2014),
 // after I. A. Polonsky and L. M. Keer (1999). Each iteration costs one convolution:
 //
-//   r = gap − approach in contact; a prescribed force makes the approach the mean gap in contact
+//   r = gap − approach in contact; a prescribed force makes the approach the mean gap in
+//       contact, weighted by the pressure: nodes that are about to leave hardly count
 //   z = preconditioner · r, less its mean in contact if the force is prescribed
 //   v = −z + β v,   β = z·q / v·q,   q = K v_old
 //   p += α v, gap += α K v,   α = −r·v / v·K v

@@ -33,22 +33,24 @@ void add(double& total, double part) {
 }
 
 struct MinGap {
-  simd::AdvanceSums sums{0, 0, HUGE_VAL, 0};
+  simd::AdvanceSums sums{0, 0, 0, HUGE_VAL, 0};
 };
 
 void combine(MinGap& total, const MinGap& part) {
   total.sums.active += part.sums.active;
+  total.sums.load += part.sums.load;
   total.sums.gap += part.sums.gap;
   total.sums.min_gap = std::min(total.sums.min_gap, part.sums.min_gap);
   total.sums.tension = std::max(total.sums.tension, part.sums.tension);
 }
 
 struct Refreshed {
-  simd::RefreshSums sums{0, 0, HUGE_VAL, 0, 0};
+  simd::RefreshSums sums{0, 0, 0, HUGE_VAL, 0, 0};
 };
 
 void combine(Refreshed& total, const Refreshed& part) {
   total.sums.active += part.sums.active;
+  total.sums.load += part.sums.load;
   total.sums.gap += part.sums.gap;
   total.sums.min_gap = std::min(total.sums.min_gap, part.sums.min_gap);
   total.sums.displacement = std::max(total.sums.displacement, part.sums.displacement);

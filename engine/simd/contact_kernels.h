@@ -9,7 +9,8 @@ namespace brinell::simd {
 
 struct AdvanceSums {
   double active = 0;   // number of active nodes
-  double gap = 0;      // Σ g over them
+  double load = 0;     // Σ p over them
+  double gap = 0;      // Σ p g over them
   double min_gap = 0;  // over the block
   double tension = 0;  // largest −p, or 0
 };
@@ -28,7 +29,8 @@ struct DirectionSums {
 
 struct RefreshSums {
   double active = 0;
-  double gap = 0;           // Σ g over active nodes
+  double load = 0;          // Σ p over them
+  double gap = 0;           // Σ p g over them
   double min_gap = 0;       // over the block
   double displacement = 0;  // largest |u|
   double energy = 0;        // Σ p (u/2 + scale·(h − origin))

@@ -130,7 +130,7 @@ TYPED_TEST(ContactKernelsOf, advance) {
     AdvanceSums sums;
     run.advance(at.n, 0.3, at.p.data(), at.v.data(), at.g.data(), at.q.data(), &sums);
     double active = 0, min_gap = HUGE_VAL, tension = 0;
-    Sum gap;
+    Sum load, gap;
     for (std::size_t i = 0; i < at.n; ++i) {
       expect_fused(at.p[i], p[i], 0.3, static_cast<double>(at.v[i]));
       expect_fused(at.g[i], g[i], 0.3, static_cast<double>(at.q[i]));
@@ -138,9 +138,12 @@ TYPED_TEST(ContactKernelsOf, advance) {
       tension = std::max(tension, -at.p[i]);
       if (!(at.p[i] > 0)) continue;
       active += 1;
-      gap.add(at.g[i]);
+      load.add(at.p[i]);
+      gap.add(at.p[i] * at.g[i]);
+      gap.add(0);  // the rounding of the product
     }
     EXPECT_EQ(sums.active, active);
+    load.expect(sums.load, "load");
     gap.expect(sums.gap, "gap");
     EXPECT_EQ(sums.min_gap, min_gap);
     EXPECT_EQ(sums.tension, tension);
@@ -260,7 +263,7 @@ TYPED_TEST(ContactKernelsOf, refresh) {
     RefreshSums sums;
     run.refresh(at.n, scale, origin, at.h.data(), at.p.data(), at.g.data(), &sums);
     double active = 0, min_gap = HUGE_VAL, displacement = 0;
-    Sum gap, energy;
+    Sum load, gap, energy;
     for (std::size_t i = 0; i < at.n; ++i) {
       expect_fused(at.g[i], u[i], scale, at.h[i] - origin);
       min_gap = std::min(min_gap, at.g[i]);
@@ -270,10 +273,13 @@ TYPED_TEST(ContactKernelsOf, refresh) {
       energy.add(0);  // the rounding of h
       if (!(p[i] > 0)) continue;
       active += 1;
-      gap.add(at.g[i]);
+      load.add(at.p[i]);
+      gap.add(at.p[i] * at.g[i]);
+      gap.add(0);  // the rounding of the product
     }
     EXPECT_EQ(at.p.copy(), p);
     EXPECT_EQ(sums.active, active);
+    load.expect(sums.load, "load");
     gap.expect(sums.gap, "gap");
     EXPECT_EQ(sums.min_gap, min_gap);
     EXPECT_EQ(sums.displacement, displacement);

@@ -13,19 +13,21 @@ template <class Arch, class Real>
 struct ContactPasses {
   static void advance(std::size_t n, double step, double* __restrict p, const Real* __restrict v,
                       double* __restrict g, const Real* __restrict q, AdvanceSums* sums) {
-    double active = 0, gap = 0, min_gap = HUGE_VAL, min_pressure = 0;
-#pragma omp simd reduction(+ : active, gap) reduction(min : min_gap, min_pressure)
+    double active = 0, load = 0, gap = 0, min_gap = HUGE_VAL, min_pressure = 0;
+#pragma omp simd reduction(+ : active, load, gap) reduction(min : min_gap, min_pressure)
     for (std::size_t i = 0; i < n; ++i) {
       const double pressure = p[i] + step * static_cast<double>(v[i]);
       const double deformed = g[i] + step * static_cast<double>(q[i]);
       p[i] = pressure;
       g[i] = deformed;
       active += pressure > 0 ? 1.0 : 0.0;
-      gap += pressure > 0 ? deformed : 0.0;
+      const double carried = pressure > 0 ? pressure : 0.0;
+      load += carried;
+      gap += carried * deformed;
       min_gap = deformed < min_gap ? deformed : min_gap;
       min_pressure = pressure < min_pressure ? pressure : min_pressure;
     }
-    *sums = {active, gap, min_gap, -min_pressure};
+    *sums = {active, load, gap, min_gap, -min_pressure};
   }
 
   static void residual(std::size_t n, double approach, double seed, double* __restrict p, const double* __restrict g,
@@ -100,8 +102,8 @@ struct ContactPasses {
 
   static void refresh(std::size_t n, double scale, double origin, const double* __restrict h,
                       const double* __restrict p, double* __restrict g, RefreshSums* sums) {
-    double active = 0, gap = 0, min_gap = HUGE_VAL, displacement = 0, energy = 0;
-#pragma omp simd reduction(+ : active, gap, energy) reduction(min : min_gap) reduction(max : displacement)
+    double active = 0, load = 0, gap = 0, min_gap = HUGE_VAL, displacement = 0, energy = 0;
+#pragma omp simd reduction(+ : active, load, gap, energy) reduction(min : min_gap) reduction(max : displacement)
     for (std::size_t i = 0; i < n; ++i) {
       const double u = g[i];
       const double undeformed = scale * (h[i] - origin);
@@ -109,12 +111,14 @@ struct ContactPasses {
       const double magnitude = std::fabs(u);
       g[i] = deformed;
       active += p[i] > 0 ? 1.0 : 0.0;
-      gap += p[i] > 0 ? deformed : 0.0;
+      const double carried = p[i] > 0 ? p[i] : 0.0;
+      load += carried;
+      gap += carried * deformed;
       min_gap = deformed < min_gap ? deformed : min_gap;
       displacement = magnitude > displacement ? magnitude : displacement;
       energy += p[i] * (0.5 * u + undeformed);
     }
-    *sums = {active, gap, min_gap, displacement, energy};
+    *sums = {active, load, gap, min_gap, displacement, energy};
   }
 
   static void indicator(std::size_t n, const double* __restrict p, Real* __restrict z) {
