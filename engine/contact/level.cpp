@@ -34,11 +34,10 @@ constexpr double kBelieved = 64 * std::numeric_limits<Real>::epsilon();
 
 template <class Real>
 Level<Real>::Level(const Resources& resources, const Compliance<double>& exact, const Grid& grid, Boundary boundary,
-                   const double* gap, double scale, Fields fields)
+                   const UndeformedGap& gap, Fields fields)
     : arena_(resources.backend.arena),
       grid_(grid),
       gap_(gap),
-      scale_(scale),
       fields_(fields),
       self_compliance_(influence::Displacement(grid.dx, grid.dy)(0, 0)),
       exact_(exact),
@@ -57,7 +56,7 @@ void Level<Real>::refresh(LevelResult& result) {
   if (drive_ == Drive::force && total_ != target_) total_ = passes_.clip(target_ / total_, fields_.p);
   exact_.apply(fields_.p, fields_.g);
   ++result.convolutions;
-  const simd::RefreshSums fresh = passes_.refresh(scale_, gap_, fields_.p, fields_.g);
+  const simd::RefreshSums fresh = passes_.refresh(gap_, fields_.p, fields_.g);
   sums_ = {fresh.active, fresh.gap, fresh.min_gap, 0};
   const double mean_pressure = total_ / static_cast<double>(grid_.nodes());
   displacement_ = std::max(fresh.displacement, self_compliance_ * mean_pressure);
@@ -73,7 +72,7 @@ Certificate Level<Real>::estimate(double complementarity) const {
 
 template <class Real>
 void Level<Real>::correct_start(Drive drive, double target) {
-  const simd::RefreshSums start = passes_.refresh(scale_, gap_, fields_.p, fields_.g);
+  const simd::RefreshSums start = passes_.refresh(gap_, fields_.p, fields_.g);
   if (start.active == 0) return;
   const double approach = drive == Drive::force ? start.gap / start.active : target;
   passes_.residual(approach, 0, fields_.p, fields_.g, z_.data());
@@ -132,7 +131,8 @@ LevelResult Level<Real>::solve(Drive drive, double target, double tolerance, std
         best = certificate.worst();
         idle = 0;
       }
-      if (result.converged || idle > kPatience || result.iterations >= max_iterations || in_contact == 0) return result;
+      if (result.converged || idle > kPatience || result.iterations >= max_iterations || in_contact == 0)
+        return result;
     } else {
       const double error = std::max(certificate.penetration, certificate.complementarity);
       const double allowed = kTensionToError * std::min(error, kLargeError);

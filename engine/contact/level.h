@@ -48,9 +48,9 @@ struct LevelResult {
 template <class Real>
 class Level {
  public:
-  /// gap · scale is the undeformed gap h; exact is the compliance of this grid.
+  /// exact is the compliance of this grid.
   Level(const Resources& resources, const Compliance<double>& exact, const Grid& grid, Boundary boundary,
-        const double* gap, double scale, Fields fields);
+        const UndeformedGap& gap, Fields fields);
 
   /// One preconditioned step from a start whose displacement is known approximately: on entry p is the pressure and g
   /// that displacement. It brings in what a coarser grid could not know.
@@ -68,8 +68,7 @@ class Level {
 
   const parallel::Arena& arena_;
   Grid grid_;
-  const double* gap_;
-  double scale_;
+  UndeformedGap gap_;
   Fields fields_;
   double self_compliance_;
 

@@ -57,7 +57,7 @@ Solver::~Solver() = default;
 /// No pressure: the undeformed gap.
 void Solver::separate() {
   std::fill(p_.begin(), p_.end(), 0.0);
-  for (std::size_t n = 0; n < g_.size(); ++n) g_[n] = scale_ * gap_[n];
+  for (std::size_t n = 0; n < g_.size(); ++n) g_[n] = scale_ * (gap_[n] - first_touch_);
   total_ = 0;
   approach_ = first_touch_;
 }
@@ -79,7 +79,7 @@ void Solver::restore(const State& state) {
   approach_ = state.approach;
   full_compliance().apply(p_.data(), g_.data());
   Passes<double>(resources_.backend.arena, resources_.backend.kernels, grid_.nodes())
-      .refresh(scale_, gap_, p_.data(), g_.data());
+      .refresh(undeformed(gap_), p_.data(), g_.data());
 }
 
 const Compliance<double>& Solver::full_compliance() {
@@ -97,7 +97,7 @@ Level<Real>& Solver::full_level() {
     }
   }();
   if (level == nullptr) {
-    level = std::make_unique<Level<Real>>(resources_, full_compliance(), grid_, boundary_, gap_, scale_,
+    level = std::make_unique<Level<Real>>(resources_, full_compliance(), grid_, boundary_, undeformed(gap_),
                                           Fields{p_.data(), g_.data()});
   }
   return *level;
@@ -126,6 +126,7 @@ Solution Solver::solve(Drive drive, double target, double tolerance, std::int32_
   }
   Solution solution = mixed_precision_ ? solve_nested<float>(drive, target, tolerance, max_iterations, observer)
                                        : solve_nested<double>(drive, target, tolerance, max_iterations, observer);
+  if (drive == Drive::approach) solution.approach = target;
   total_ = solution.total;
   approach_ = solution.approach;
   return solution;
@@ -135,10 +136,11 @@ template <class Real>
 Solution Solver::solve_nested(Drive drive, double target, double tolerance, std::int32_t max_iterations,
                               Observer observer) {
   const parallel::Arena& arena = resources_.backend.arena;
-  const double unit_target = drive == Drive::approach ? target * scale_ : target;
+  const double unit_target = drive == Drive::approach ? (target - first_touch_) * scale_ : target;
   const auto to_solution = [&](const LevelResult& result) {
-    return Solution{result.converged,   result.approach / scale_, result.total,
-                    result.certificate, result.iterations,        result.convolutions};
+    return Solution{result.converged,  first_touch_ + result.approach / scale_,
+                    result.total,      result.certificate,
+                    result.iterations, result.convolutions};
   };
   const Box whole = Box::whole(grid_);
   if (coarser_.empty() || start_is_close(drive, target)) {
@@ -163,7 +165,7 @@ Solution Solver::solve_nested(Drive drive, double target, double tolerance, std:
     const Grid part{box.nx, box.ny, grid.dx, grid.dy};
     const double level_target = drive == Drive::force ? unit_target * unit_area / grid.cell_area() : unit_target;
     const Compliance<double> compliance(resources_, part, boundary_);
-    Level<Real> solver(resources_, compliance, part, boundary_, gap.data(), scale_, {p.data(), g.data()});
+    Level<Real> solver(resources_, compliance, part, boundary_, undeformed(gap.data()), {p.data(), g.data()});
     if (level + 1 < coarser_.size()) solver.correct_start(drive, level_target);
     solver.solve(drive, level_target, std::max(kCoarseTolerance, tolerance), kCoarseIterations, observer);
 
@@ -175,7 +177,7 @@ Solution Solver::solve_nested(Drive drive, double target, double tolerance, std:
     auto next_p = Buffer<double>::uninitialised(nodes);
     auto next_g = Buffer<double>::uninitialised(nodes);
     prolong_pressure(box, p.data(), next, in_place ? p_.data() : next_p.data(), arena);
-    prolong_displacement(box, g.data(), gap.data(), scale_, next, in_place ? g_.data() : next_g.data(), arena);
+    prolong_displacement(box, g.data(), undeformed(gap.data()), next, in_place ? g_.data() : next_g.data(), arena);
     if (!in_place) gap = gather(finer, next, finer_gap);
     p = std::move(next_p);
     g = std::move(next_g);
@@ -193,7 +195,7 @@ Solution Solver::solve_nested(Drive drive, double target, double tolerance, std:
   // Only the box is solved, then certified on the whole grid.
   const Grid part{box.nx, box.ny, grid_.dx, grid_.dy};
   const Compliance<double> compliance(resources_, part, boundary_);
-  Level<Real> window(resources_, compliance, part, boundary_, gap.data(), scale_, {p.data(), g.data()});
+  Level<Real> window(resources_, compliance, part, boundary_, undeformed(gap.data()), {p.data(), g.data()});
   window.correct_start(drive, unit_target);
   const LevelResult inside = window.solve(drive, unit_target, tolerance, max_iterations, observer);
   std::fill(p_.begin(), p_.end(), 0.0);
@@ -201,7 +203,7 @@ Solution Solver::solve_nested(Drive drive, double target, double tolerance, std:
     std::copy_n(p.data() + j * box.nx, box.nx, p_.data() + (box.j0 + j) * grid_.nx + box.i0);
   }
   Passes<double> passes(arena, resources_.backend.kernels, grid_.nodes());
-  const Certified certified = certify(arena, full_compliance(), passes, grid_.nodes(), gap_, scale_, p_.data(),
+  const Certified certified = certify(arena, full_compliance(), passes, grid_.nodes(), undeformed(gap_), p_.data(),
                                       g_.data(), drive, unit_target);
   const bool holds = certified.certificate.worst() <= tolerance;
   if (inside.converged && !holds) {  // something outside the box came into contact

@@ -42,7 +42,8 @@ class Solver {
   /// Pressure [E*] of every node.
   const Buffer<double>& pressure() const { return p_; }
 
-  /// Gap of the deformed surfaces before the approach is taken off, in units of dx.
+  /// Gap of the deformed surfaces before the approach is taken off, both measured from first_touch, in units of dx:
+  /// first_touch + dx·deformed_gap − approach is what is open between them.
   const Buffer<double>& deformed_gap() const { return g_; }
 
   double first_touch() const { return first_touch_; }  // [m]
@@ -70,6 +71,7 @@ class Solver {
   Level<Real>& full_level();
   bool start_is_close(Drive drive, double target) const;
   void separate();
+  UndeformedGap undeformed(const double* gap) const { return {gap, scale_, first_touch_}; }
 
   Resources resources_;
   Grid grid_;  // unit lengths: dx = 1

@@ -159,7 +159,8 @@ Increment Run::summary(const contact::Solution& solution, const Position& positi
   increment.max_pressure = sums.largest * contact_modulus_;
   increment.max_pressure_at[0] = sums.largest_at >= 0 ? grid.x(sums.largest_at % grid.nx) : none;
   increment.max_pressure_at[1] = sums.largest_at >= 0 ? grid.y(sums.largest_at / grid.nx) : none;
-  increment.mean_gap = sums.gap / static_cast<double>(grid.nodes()) * grid.dx - solution.approach;
+  increment.mean_gap =
+      sums.gap / static_cast<double>(grid.nodes()) * grid.dx - (solution.approach - solver_->first_touch());
   increment.certificate = solution.certificate;
   return increment;
 }
@@ -175,12 +176,13 @@ void Run::copy_field(Field field, std::span<double> values) {
   const Buffer<double>& p = solver_->pressure();
   const Buffer<double>& g = solver_->deformed_gap();
   const double unit = scene_.grid().dx;
-  const double approach = increments_.back().approach;
+  const double first_touch = solver_->first_touch();
+  const double approach = increments_.back().approach - first_touch;
   for (std::size_t n = 0; n < gap_.size(); ++n) {
     switch (field) {
       case Field::pressure: values[n] = p[n] * contact_modulus_; break;
       case Field::gap: values[n] = g[n] * unit - approach; break;
-      case Field::displacement: values[n] = g[n] * unit - gap_[n]; break;
+      case Field::displacement: values[n] = g[n] * unit - (gap_[n] - first_touch); break;
       case Field::undeformed_gap: break;
     }
   }
