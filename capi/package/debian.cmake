@@ -23,18 +23,15 @@ set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS_POLICY ">=")
 
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME libbrinell${library_abi})
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SECTION libs)
-set(CPACK_DEBIAN_RUNTIME_DESCRIPTION "${PROJECT_DESCRIPTION} (library)
- Presses two bodies together, given their gap, their materials and a history
- of loads; answers with pressure, contact area, approach and displacement,
- each with a certificate of its error.")
+set(CPACK_DEBIAN_RUNTIME_DESCRIPTION "Shared library of the C interface: presses two bodies together, given their gap, \
+materials and loads; answers with pressure, contact area, approach and displacement, each with a certificate.")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libbrinell-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libbrinell${library_abi} (= ${PROJECT_VERSION})")
-set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "${PROJECT_DESCRIPTION} (header)
- The C header, the CMake and pkg-config files and examples.")
+set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "C header, CMake and pkg-config files, examples.")
 set(CPACK_DEBIAN_CLI_PACKAGE_NAME brinell)
 set(CPACK_DEBIAN_CLI_PACKAGE_DEPENDS "libbrinell${library_abi} (= ${PROJECT_VERSION})")
-set(CPACK_DEBIAN_CLI_DESCRIPTION "${PROJECT_DESCRIPTION} (command line)
- Solves scenes described in TOML on formulas and measured surfaces; writes
- HDF5 with an XDMF beside it that ParaView opens.")
+set(CPACK_DEBIAN_CLI_PACKAGE_RECOMMENDS gnuplot-nox)
+set(CPACK_DEBIAN_CLI_DESCRIPTION "Command line: solves scenes described in TOML, on formulas and measured surfaces, and \
+writes HDF5 with an XDMF file beside it that ParaView opens.")
 include(CPack)
