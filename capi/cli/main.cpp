@@ -10,6 +10,7 @@
 #include "commands.h"
 #include "errors.h"
 #include "handles.h"
+#include "words.h"
 
 namespace {
 
@@ -52,19 +53,42 @@ int guarded(const std::function<int()>& command) {
   }
 }
 
+/// What is wrong with the arguments, in the form of all other messages, and where to read more.
+std::string usage_message(const CLI::App* app, const CLI::Error& error) {
+  const auto commands = app->get_subcommands();
+  if (!commands.empty()) {
+    const std::string command = app->get_name() + " " + commands.front()->get_name();
+    return command + ": " + error.what() + "\nTry: " + command + " --help\n";
+  }
+  std::vector<std::string> names;
+  for (const auto* command : app->get_subcommands([](const CLI::App*) { return true; })) {
+    names.push_back(command->get_name());
+  }
+  const auto unknown = app->remaining();
+  if (unknown.empty()) return app->help();
+  return app->get_name() + ": '" + unknown.front() + "' is no command, the nearest is '" +
+         nearest(unknown.front(), names) + "'; expected one of: " + joined(names) + "\n";
+}
+
+/// An empty path comes from a shell's variable that is not set; it never means the present folder.
+CLI::Validator not_empty() {
+  return {[](const std::string& path) { return path.empty() ? "the path is empty" : ""; }, ""};
+}
+
 class Program {
  public:
   Program() : app_("Semi-analytical contact mechanics of real surfaces", "brinell") {
     app_.set_version_flag("--version", std::string("brinell ") + brn_version());
     app_.require_subcommand(1);
-    app_.failure_message(CLI::FailureMessage::help);
+    app_.failure_message(usage_message);
     app_.footer(
         "Exit status: 0 solved and certified, 1 not converged, 2 bad usage or scene, 3 file or resource trouble,\n"
         "130 interrupted (state saved).");
 
     auto& run = add("run", "Solve a scene and write its results", [this] { return run_command(options_); });
     add_scene(run);
-    run.add_option("--out", options_.out, "Folder of the results (default: out/ and the scene's name)");
+    run.add_option("--out", options_.out, "Folder of the results (default: out/ and the scene's name)")
+        ->check(not_empty());
     add_run_flags(run);
 
     auto& plan = add("plan", "Print what a scene needs, before anything is solved",
@@ -75,12 +99,12 @@ class Program {
     add_scene(add("check", "Check a scene and the files it names", [this] { return check_command(options_.scene); }));
 
     auto& resume = add("resume", "Go on with an interrupted run", [this] { return resume_command(options_); });
-    resume.add_option("DIR", options_.out, "Folder of the run")->required();
+    resume.add_option("DIR", options_.out, "Folder of the run")->required()->check(not_empty());
     add_run_flags(resume);
 
     auto& report = add("report", "Draw a run's trace and pressure as SVG and PNG",
                        [this] { return report_command(options_.out); });
-    report.add_option("DIR", options_.out, "Folder of the run")->required();
+    report.add_option("DIR", options_.out, "Folder of the run")->required()->check(not_empty());
 
     auto& bench = add("bench", "Time scenes",
                       [this] { return bench_command(paths_, rounds_, options_.threads.value_or(0), options_.json); });
@@ -113,7 +137,9 @@ class Program {
   }
 
   void add_scene(CLI::App& sub) {
-    sub.add_option("SCENE", options_.scene, "TOML file, or a folder that holds scene.toml")->required();
+    sub.add_option("SCENE", options_.scene, "TOML file, or a folder that holds scene.toml")
+        ->required()
+        ->check(not_empty());
   }
 
   void add_run_flags(CLI::App& sub) {

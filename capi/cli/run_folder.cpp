@@ -1,5 +1,6 @@
 #include "run_folder.h"
 
+#include <array>
 #include <nlohmann/json.hpp>
 
 #include "errors.h"
@@ -9,15 +10,22 @@
 namespace brinell::cli {
 
 void RunFolder::begin(const SceneFile& file) const {
-  std::error_code ignored;
-  const bool is_source = std::filesystem::equivalent(scene(), file.path, ignored);
-  if (!is_source && std::filesystem::exists(scene()) && !std::filesystem::exists(origin())) {
-    fail_file(path_,
-              "holds another scene, " + scene().string() + "; expected a new folder or that of an earlier run");
+  std::error_code error;
+  const bool is_source = std::filesystem::equivalent(scene(), file.path, error);
+  const std::array results{summary(), trace(), fields(), path_ / "fields.xdmf", checkpoint()};
+  if (!std::filesystem::exists(origin(), error)) {
+    const std::string expected = "; expected a new folder or that of an earlier run";
+    if (!is_source && std::filesystem::exists(scene(), error)) {
+      fail_file(path_, "holds another scene, " + scene().string() + expected);
+    }
+    for (const auto& result : results) {
+      if (std::filesystem::exists(result, error)) {
+        fail_file(path_, "holds a " + result.filename().string() + " that no run has written" + expected);
+      }
+    }
   }
   make_output_folder(path_);
-  for (const auto& result : {summary(), trace(), fields(), path_ / "fields.xdmf", checkpoint()}) {
-    std::error_code error;
+  for (const auto& result : results) {
     std::filesystem::remove(result, error);
     if (error) fail_file(result, "cannot be replaced: " + error.message());
   }

@@ -23,7 +23,7 @@ class RunFolder {
   std::filesystem::path checkpoint() const { return path_ / "checkpoint.bin"; }
 
   /// Creates the folder, removes the results of an earlier run and copies the scene. Throws FileError; in particular
-  /// it refuses a folder that holds a scene which no run has put there.
+  /// it refuses a folder that holds a scene, or files of the results' names, which no run has put there.
   void begin(const SceneFile& scene) const;
 
   /// The scene that `begin` copied. Throws FileError if the folder is none of a run.

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "errors.h"
+#include "words.h"
 
 namespace brinell::cli {
 
@@ -33,38 +34,7 @@ std::string shown(const toml::node& node) {
   return text;
 }
 
-/// Insertions, deletions, replacements and exchanges of two neighbours that turn one word into the other.
-std::size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<std::vector<std::size_t>> cost(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
-  for (std::size_t i = 0; i <= a.size(); ++i) {
-    for (std::size_t j = 0; j <= b.size(); ++j) {
-      if (i == 0 || j == 0) {
-        cost[i][j] = i + j;
-        continue;
-      }
-      const std::size_t replaced = cost[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
-      cost[i][j] = std::min({replaced, cost[i - 1][j] + 1, cost[i][j - 1] + 1});
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
-        cost[i][j] = std::min(cost[i][j], cost[i - 2][j - 2] + 1);
-      }
-    }
-  }
-  return cost[a.size()][b.size()];
-}
-
 }  // namespace
-
-std::string nearest(const std::string& word, const std::vector<std::string>& candidates) {
-  return *std::min_element(candidates.begin(), candidates.end(), [&](const auto& a, const auto& b) {
-    return edit_distance(word, a) < edit_distance(word, b);
-  });
-}
-
-std::string joined(const std::vector<std::string>& words) {
-  std::string text;
-  for (const auto& word : words) text += (text.empty() ? "" : ", ") + word;
-  return text;
-}
 
 TomlTable::TomlTable(const toml::table& table, std::string file_name, std::string label)
     : table_(table), file_name_(std::move(file_name)), label_(std::move(label)) {}
@@ -90,7 +60,8 @@ void TomlTable::fail(const std::string& text) const {
 
 void TomlTable::fail_key(const std::string& key, const std::string& text) const {
   const toml::node* node = table_.get(key);
-  fail_at(line_of(key), key + (node != nullptr ? " = " + shown(*node) : "") + ", " + text);
+  const bool is_value = node != nullptr && !node->is_table() && !node->is_array_of_tables();
+  fail_at(line_of(key), key + (is_value ? " = " + shown(*node) : "") + ", " + text);
 }
 
 void TomlTable::fail_type(const std::string& key, const toml::node& node, const std::string& wanted) const {
@@ -231,6 +202,7 @@ std::vector<TomlTable> TomlTable::tables(const std::string& key) {
   std::vector<TomlTable> list;
   if (const toml::node* node = find(key)) {
     const std::string label = "[[" + key + "]]";
+    if (node->is_table()) fail_at(line_of(key), "found [" + key + "], expected " + label + ", there may be several");
     if (!node->is_array()) fail_type(key, *node, "tables " + label);
     for (const auto& element : *node->as_array()) {
       if (!element.is_table()) fail_type(key, element, "tables " + label);

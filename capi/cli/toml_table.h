@@ -83,10 +83,4 @@ class TomlTable {
   std::vector<std::string> missing_;
 };
 
-/// The candidate with the fewest typing errors between it and the word; candidates must not be empty.
-std::string nearest(const std::string& word, const std::vector<std::string>& candidates);
-
-/// "a, b, c"
-std::string joined(const std::vector<std::string>& words);
-
 }  // namespace brinell::cli

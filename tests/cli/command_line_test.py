@@ -111,6 +111,16 @@ class CommandLine(unittest.TestCase):
             self.expect(result, 2)
             self.assertTrue(result.stderr, arguments)
 
+    def test_bad_usage_is_named(self):
+        for arguments, words in ((["runn", "a"], ["brinell: 'runn'", "nearest is 'run'", "report"]),
+                                 (["run"], ["brinell run: SCENE is required", "brinell run --help"]),
+                                 (["plan", "a", "--jsn"], ["brinell plan: ", "--jsn"]),
+                                 (["run", ""], ["SCENE", "empty"]), (["resume", ""], ["DIR", "empty"]),
+                                 (["run", self.scene, "--out", ""], ["--out", "empty"])):
+            self.expect(self.brinell(*arguments), 2, *words)
+        self.assertIn("Subcommands", self.brinell().stderr)
+        self.assertFalse((self.folder / "out").exists())
+
     # ------------------------------------------------------------------ results
 
     def test_run_writes_the_files_of_the_contract(self):
@@ -187,6 +197,7 @@ class CommandLine(unittest.TestCase):
         self.assertIn("contact", plan["stages"])
         self.assertGreater(plan["memory_bytes"], 32 * 24 * 8)
         self.assertIn("contact", self.brinell("plan", self.scene).stdout)
+        self.assertIn("5 increments in 2 steps", self.brinell("plan", self.scene).stdout)
         self.assertIn("valid", self.brinell("check", self.scene).stdout)
         self.assertIn("isa", json.loads(self.brinell("info", "--json").stdout))
         self.write("map.gsf", gsf(2, 2, [0, 1, 2, 3]))
@@ -294,6 +305,8 @@ class CommandLine(unittest.TestCase):
             ('"sphere"', '"spher"', ['"spher"', "'sphere'"]),
             ("radius = 1e-3", "", ["radius is missing"]),
             ('"gap"', '"gape"', ["'gape'", "'gap'"]),
+            ("normal_force = 0.05", "force = 0.05", ["'force'", "nearest known key is 'normal_force'"]),
+            ("[[surface]]", "[surface]", [":10: found [surface], expected [[surface]]"]),
             ("title =", "title", [":1:"]),
             ('shape = "sphere"\nradius = 1e-3', 'shape = "cone"\nhalf_angle = 2.0', ["[[surface]] 1", "half_angle"]),
         ]
@@ -334,6 +347,16 @@ class CommandLine(unittest.TestCase):
         (self.out / "scene.toml").write_text("precious")
         self.expect(self.run_scene(), 3, "another scene")
         self.assertEqual([p.read_text() for p in self.out.iterdir()], ["precious"])
+
+    def test_results_that_no_run_has_written_are_not_replaced(self):
+        for name in ("summary.json", "trace.csv", "fields.h5", "fields.xdmf", "checkpoint.bin"):
+            with self.subTest(name):
+                (self.folder / name).write_text("precious")
+                self.expect(self.brinell("run", self.scene, "--out", "."), 3, name, "no run has written")
+                self.assertEqual((self.folder / name).read_text(), "precious")
+                (self.folder / name).unlink()
+        for _ in range(2):  # the scene's own folder, new and again
+            self.expect(self.brinell("run", self.scene, "--out", "."), 0)
 
     def test_a_full_disk_is_status_3_and_leaves_no_part(self):
         self.write("scene.toml", SCENE.replace("[32, 24]", "[64, 64]"))

@@ -75,6 +75,10 @@ std::string bytes_text(std::uint64_t bytes) {
   return text.data();
 }
 
+std::string counted(std::size_t count, const std::string& noun) {
+  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+}
+
 std::string padded(std::string text, std::size_t width) {
   if (text.size() < width) text.resize(width, ' ');
   return text;
@@ -161,8 +165,8 @@ std::string plan_table(const SceneFile& file, const brn_grid& grid, brn_run* run
   text += "grid  " + std::to_string(grid.nx) + " x " + std::to_string(grid.ny) + " nodes, spacing " +
           number_text(grid.dx) + " x " + number_text(grid.dy) + " m, " + (file.grid.periodic ? "periodic" : "free") +
           "\n";
-  text += "load  " + std::to_string(brn_run_total_increments(run)) + " increments in " +
-          std::to_string(file.steps.size()) + " steps\n\n";
+  text += "load  " + counted(static_cast<std::size_t>(brn_run_total_increments(run)), "increment") + " in " +
+          counted(file.steps.size(), "step") + "\n\n";
   const auto items = plan_items(run);
   std::size_t stage_width = 5;
   std::size_t what_width = 4;
