@@ -25,17 +25,21 @@ constexpr double kRestartAfter = 0.05;
 constexpr int kRises = 3;
 // Iterations without a better certificate until the level is given up: round-off has been reached.
 constexpr int kPatience = 150;
+// The error is believed down to this fraction of that of the last fresh convolution: what the updates of the
+// displacement, in Real, can keep.
+template <class Real>
+constexpr double kBelieved = 64 * std::numeric_limits<Real>::epsilon();
 
 }  // namespace
 
 template <class Real>
 Level<Real>::Level(const Resources& resources, const Compliance<double>& exact, const Grid& grid, Boundary boundary,
-                   const double* gap, double scale, State state)
+                   const double* gap, double scale, Fields fields)
     : arena_(resources.backend.arena),
       grid_(grid),
       gap_(gap),
       scale_(scale),
-      state_(state),
+      fields_(fields),
       self_compliance_(influence::Displacement(grid.dx, grid.dy)(0, 0)),
       exact_(exact),
       preconditioner_(resources, grid, boundary),
@@ -49,13 +53,14 @@ Level<Real>::Level(const Resources& resources, const Compliance<double>& exact, 
 /// Clipped and rescaled pressure, its displacement by a fresh convolution, and all that follows from them.
 template <class Real>
 void Level<Real>::refresh(LevelResult& result) {
-  total_ = passes_.clip(1, state_.p);
-  if (drive_ == Drive::force && total_ != target_) total_ = passes_.clip(target_ / total_, state_.p);
-  exact_.apply(state_.p, state_.g);
+  total_ = passes_.clip(1, fields_.p);
+  if (drive_ == Drive::force && total_ != target_) total_ = passes_.clip(target_ / total_, fields_.p);
+  exact_.apply(fields_.p, fields_.g);
   ++result.convolutions;
-  const simd::RefreshSums fresh = passes_.refresh(scale_, gap_, state_.p, state_.g);
+  const simd::RefreshSums fresh = passes_.refresh(scale_, gap_, fields_.p, fields_.g);
   sums_ = {fresh.active, fresh.gap, fresh.min_gap, 0};
-  displacement_ = fresh.displacement;
+  const double mean_pressure = total_ / static_cast<double>(grid_.nodes());
+  displacement_ = std::max(fresh.displacement, self_compliance_ * mean_pressure);
   energy_ = fresh.energy - (drive_ == Drive::approach ? target_ * total_ : 0);
 }
 
@@ -68,13 +73,13 @@ Certificate Level<Real>::estimate(double complementarity) const {
 
 template <class Real>
 void Level<Real>::correct_start(Drive drive, double target) {
-  const simd::RefreshSums start = passes_.refresh(scale_, gap_, state_.p, state_.g);
+  const simd::RefreshSums start = passes_.refresh(scale_, gap_, fields_.p, fields_.g);
   if (start.active == 0) return;
   const double approach = drive == Drive::force ? start.gap / start.active : target;
-  passes_.residual(approach, 0, state_.p, state_.g, z_.data());
+  passes_.residual(approach, 0, fields_.p, fields_.g, z_.data());
   preconditioner_.apply_local(z_.data());
-  const double mean = drive == Drive::force ? passes_.sum(state_.p, z_.data()) / start.active : 0;
-  passes_.correct(mean, state_.p, z_.data());
+  const double mean = drive == Drive::force ? passes_.sum(fields_.p, z_.data()) / start.active : 0;
+  passes_.correct(mean, fields_.p, z_.data());
 }
 
 template <class Real>
@@ -84,10 +89,11 @@ LevelResult Level<Real>::solve(Drive drive, double target, double tolerance, std
   drive_ = drive;
   target_ = target;
   const double nodes = static_cast<double>(grid_.nodes());
-  if (drive == Drive::force && !(passes_.clip(1, state_.p) > 0)) {
-    std::fill_n(state_.p, grid_.nodes(), target / nodes);
+  if (drive == Drive::force && !(passes_.clip(1, fields_.p) > 0)) {
+    std::fill_n(fields_.p, grid_.nodes(), target / nodes);
   }
   refresh(result);
+  preconditioner_.treat_large_scales(true);
 
   bool fresh = true;
   bool adapted = false;
@@ -99,6 +105,7 @@ LevelResult Level<Real>::solve(Drive drive, double target, double tolerance, std
   double since_adapted = 0;  // and since the preconditioner was adapted
   double last_energy = std::numeric_limits<double>::infinity();
   double best = std::numeric_limits<double>::infinity();
+  double fresh_error = best;  // as of the last fresh convolution
   double in_contact = sums_.active;
 
   while (true) {
@@ -106,7 +113,7 @@ LevelResult Level<Real>::solve(Drive drive, double target, double tolerance, std
       approach_ = drive == Drive::force ? sums_.gap / sums_.active : target;
     }
     const double seed = kSeed * std::max(total_ / nodes, std::numeric_limits<double>::min() / kSeed);
-    simd::ResidualSums residual = passes_.residual(approach_, seed, state_.p, state_.g, z_.data());
+    simd::ResidualSums residual = passes_.residual(approach_, seed, fields_.p, fields_.g, z_.data());
     changed += residual.entered + std::max(0.0, in_contact - sums_.active);
     in_contact = residual.active;
 
@@ -119,17 +126,20 @@ LevelResult Level<Real>::solve(Drive drive, double target, double tolerance, std
       result.total = total_;
       result.certificate = certificate;
       result.converged = certificate.worst() <= tolerance;
-      const bool stalled = ++idle > kPatience;
+      fresh_error = certificate.worst();
+      ++idle;
       if (certificate.worst() < best) {
         best = certificate.worst();
         idle = 0;
       }
-      if (result.converged || stalled || result.iterations >= max_iterations || in_contact == 0) return result;
+      if (result.converged || idle > kPatience || result.iterations >= max_iterations || in_contact == 0) return result;
     } else {
       const double error = std::max(certificate.penetration, certificate.complementarity);
       const double allowed = kTensionToError * std::min(error, kLargeError);
-      const bool overdue =
-          certificate.tension > allowed || error <= tolerance || residual.barred > allowed * displacement_;
+      const bool outgrown = certificate.penetration >= 1;  // the displacement that it is relative to, by far
+      const bool overdue = outgrown || certificate.tension > allowed || idle > kPatience ||
+                           error <= std::max(tolerance, kBelieved<Real> * fresh_error) ||
+                           residual.barred > allowed * displacement_;
       if (overdue || result.iterations >= max_iterations) {
         refresh(result);
         fresh = true;
@@ -137,7 +147,7 @@ LevelResult Level<Real>::solve(Drive drive, double target, double tolerance, std
           conjugate = false;
           if (++rises % kRises == 0) {
             preconditioned = rises < 2 * kRises;
-            preconditioner_.drop_large_scales();
+            preconditioner_.treat_large_scales(false);
           }
         }
         last_energy = energy_;
@@ -147,14 +157,14 @@ LevelResult Level<Real>::solve(Drive drive, double target, double tolerance, std
 
     since_adapted += changed;
     if (preconditioned && (!adapted || since_adapted > kAdaptAfter * in_contact)) {
-      preconditioner_.adapt(passes_, state_.p, z_.data());
-      residual = passes_.residual(approach_, seed, state_.p, state_.g, z_.data());
+      preconditioner_.adapt(passes_, fields_.p, z_.data());
+      residual = passes_.residual(approach_, seed, fields_.p, fields_.g, z_.data());
       adapted = true;
       since_adapted = 0;
     }
     if (preconditioned) preconditioner_.apply(z_.data());
 
-    const simd::DirectionSums sums = passes_.correlate(state_.p, z_.data(), v_.data(), q_.data());
+    const simd::DirectionSums sums = passes_.correlate(fields_.p, z_.data(), v_.data(), q_.data());
     const double mean_z = drive == Drive::force ? sums.z / in_contact : 0;
     const double mean_v = drive == Drive::force ? sums.v / in_contact : 0;
     const double curvature_before = sums.vq - mean_v * sums.q;
@@ -162,9 +172,9 @@ LevelResult Level<Real>::solve(Drive drive, double target, double tolerance, std
     if (conjugate && changed <= kRestartAfter * in_contact && curvature_before > 0) {
       beta = std::max(0.0, (sums.zq - mean_z * sums.q) / curvature_before);
     }
-    double slope = passes_.redirect(beta, mean_v, mean_z, approach_, state_.p, state_.g, z_.data(), v_.data());
+    double slope = passes_.redirect(beta, mean_v, mean_z, approach_, fields_.p, fields_.g, z_.data(), v_.data());
     if (!(slope < 0) && beta > 0) {
-      slope = passes_.redirect(0, 0, mean_z, approach_, state_.p, state_.g, z_.data(), v_.data());
+      slope = passes_.redirect(0, 0, mean_z, approach_, fields_.p, fields_.g, z_.data(), v_.data());
     }
 
     changed = 0;
@@ -183,7 +193,7 @@ LevelResult Level<Real>::solve(Drive drive, double target, double tolerance, std
     ++result.iterations;
     ++idle;
     conjugate = step > 0;
-    sums_ = passes_.advance(step, state_.p, v_.data(), state_.g, q_.data());
+    sums_ = passes_.advance(step, fields_.p, v_.data(), fields_.g, q_.data());
     fresh = false;
     if (step == 0) {  // a lone node, or a residual at round-off: only the entering nodes can change anything
       refresh(result);

@@ -30,7 +30,7 @@ namespace brinell::contact {
 
 /// What a level starts from and ends with, borrowed: pressure p [E*], and the gap of the deformed surfaces before the
 /// approach is taken off, g = h + K p.
-struct State {
+struct Fields {
   double* p;
   double* g;
 };
@@ -50,13 +50,13 @@ class Level {
  public:
   /// gap · scale is the undeformed gap h; exact is the compliance of this grid.
   Level(const Resources& resources, const Compliance<double>& exact, const Grid& grid, Boundary boundary,
-        const double* gap, double scale, State state);
+        const double* gap, double scale, Fields fields);
 
   /// One preconditioned step from a start whose displacement is known approximately: on entry p is the pressure and g
   /// that displacement. It brings in what a coarser grid could not know.
   void correct_start(Drive drive, double target);
 
-  /// target: Σ p > 0, or the approach. Starts from state.p.
+  /// target: Σ p > 0, or the approach. Starts from fields.p.
   LevelResult solve(Drive drive, double target, double tolerance, std::int32_t max_iterations, Observer observer);
 
   /// Bytes of one on such a grid, without the exact compliance.
@@ -70,7 +70,7 @@ class Level {
   Grid grid_;
   const double* gap_;
   double scale_;
-  State state_;
+  Fields fields_;
   double self_compliance_;
 
   const Compliance<double>& exact_;

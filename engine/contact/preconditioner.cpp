@@ -1,5 +1,7 @@
 #include "contact/preconditioner.h"
 
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -23,6 +25,13 @@ std::int64_t cell_size(std::int64_t nodes) {
 }  // namespace
 
 template <class Real>
+struct Preconditioner<Real>::CellSystem {
+  Eigen::MatrixXd compliance;           // S
+  Eigen::VectorXd inverse_root;         // D^(-1/2), 0 for cells without contact
+  Eigen::LLT<Eigen::MatrixXd> factors;  // of 1 + D^(1/2) S D^(1/2)
+};
+
+template <class Real>
 Preconditioner<Real>::Preconditioner(const Resources& resources, const Grid& grid, Boundary boundary)
     : arena_(resources.backend.arena),
       kernels_(resources.backend.kernels.of<Real>().contact),
@@ -35,9 +44,13 @@ Preconditioner<Real>::Preconditioner(const Resources& resources, const Grid& gri
       cells_x_((grid.nx + cell_nx_ - 1) / cell_nx_),
       cells_y_((grid.ny + cell_ny_ - 1) / cell_ny_),
       cells_(cells_x_ * cells_y_),
-      conductance_(grid.nodes()) {
+      conductance_(grid.nodes()),
+      system_(std::make_unique<CellSystem>()) {
   cell_compliance(resources, boundary);
 }
+
+template <class Real>
+Preconditioner<Real>::~Preconditioner() = default;
 
 /// S(I, J): mean displacement of cell I under a unit pressure on one node, spread over cell J.
 template <class Real>
@@ -56,12 +69,12 @@ void Preconditioner<Real>::cell_compliance(const Resources& resources, Boundary 
     influence::Displacement(coarse.dx, coarse.dy)
         .fill(arena_, resources.backend.kernels, coarse.nx, coarse.ny, response.data());
   }
-  compliance_.resize(cells_, cells_);
+  system_->compliance.resize(cells_, cells_);
   for (std::int64_t a = 0; a < cells_; ++a) {
     for (std::int64_t b = 0; b < cells_; ++b) {
       const std::int64_t i = std::abs(a % cells_x_ - b % cells_x_);
       const std::int64_t j = std::abs(a / cells_x_ - b / cells_x_);
-      compliance_(a, b) = response[static_cast<std::size_t>(j * cells_x_ + i)] / nodes;
+      system_->compliance(a, b) = response[static_cast<std::size_t>(j * cells_x_ + i)] / nodes;
     }
   }
 }
@@ -84,7 +97,7 @@ void Preconditioner<Real>::for_segments(const Body& body) const {
 
 template <class Real>
 void Preconditioner<Real>::adapt(Passes<Real>& passes, const double* p, Real* scratch) {
-  if (cells_ == 0) return;
+  if (!large_scales_) return;
   passes.indicator(p, scratch);
   apply_local(scratch);
   passes.conductance(p, scratch, conductance_.data());
@@ -96,27 +109,27 @@ void Preconditioner<Real>::adapt(Passes<Real>& passes, const double* p, Real* sc
     }
   });
   root = root.cwiseSqrt();
-  inverse_root_ = (root.array() > 0).select(root.cwiseInverse(), 0.0);
-  Eigen::MatrixXd matrix = root.asDiagonal() * compliance_ * root.asDiagonal();
+  system_->inverse_root = (root.array() > 0).select(root.cwiseInverse(), 0.0);
+  Eigen::MatrixXd matrix = root.asDiagonal() * system_->compliance * root.asDiagonal();
   matrix.diagonal().array() += 1;
-  system_.compute(matrix);
-  if (system_.info() != Eigen::Success) drop_large_scales();
+  system_->factors.compute(matrix);
+  if (system_->factors.info() != Eigen::Success) treat_large_scales(false);
 }
 
 template <class Real>
 void Preconditioner<Real>::apply(Real* z) {
   Eigen::VectorXd sums = Eigen::VectorXd::Zero(cells_);
-  if (cells_ != 0) {
+  if (large_scales_) {
     for_segments([&](std::int64_t cell, std::int64_t first, std::size_t n) {
       sums[cell] += kernels_.weigh(n, conductance_.data() + first, z + first);
     });
     // (S⁻¹ + D)⁻¹ = D^(-1/2) (1 − (1 + D^(1/2) S D^(1/2))⁻¹) D^(-1/2)
-    sums.array() *= inverse_root_.array();
-    sums -= system_.solve(sums).eval();
-    sums.array() *= inverse_root_.array();
+    sums.array() *= system_->inverse_root.array();
+    sums -= system_->factors.solve(sums).eval();
+    sums.array() *= system_->inverse_root.array();
   }
   apply_local(z);
-  if (cells_ != 0) {
+  if (large_scales_) {
     for_segments([&](std::int64_t cell, std::int64_t first, std::size_t n) {
       if (sums[cell] != 0) kernels_.relax(n, sums[cell], conductance_.data() + first, z + first);
     });

@@ -16,8 +16,6 @@
 // Laplacian of a graph of non-negative weights.
 #pragma once
 
-#include <Eigen/Cholesky>
-#include <Eigen/Core>
 #include <cstddef>
 #include <memory>
 
@@ -31,6 +29,7 @@ template <class Real>
 class Preconditioner {
  public:
   Preconditioner(const Resources& resources, const Grid& grid, Boundary boundary);
+  ~Preconditioner();
 
   /// To the nodes in contact, p > 0; scratch: one field.
   void adapt(Passes<Real>& passes, const double* p, Real* scratch);
@@ -41,12 +40,13 @@ class Preconditioner {
   /// The local part alone.
   void apply_local(Real* z) const { local_.apply(*spectrum_, z, z, *workspace_); }
 
-  /// Leaves the large scales to the iteration from now on.
-  void drop_large_scales() { cells_ = 0; }
+  /// Whether the large scales are treated; if not, they are left to the iteration.
+  void treat_large_scales(bool treat) { large_scales_ = treat; }
 
   static std::size_t bytes(const fft::Backend& backend, const Grid& grid);
 
  private:
+  struct CellSystem;
   void cell_compliance(const Resources& resources, Boundary boundary);
   template <class Body>
   void for_segments(const Body& body) const;
@@ -60,11 +60,10 @@ class Preconditioner {
 
   std::int64_t cell_nx_, cell_ny_;  // nodes of a cell
   std::int64_t cells_x_, cells_y_;
-  std::int64_t cells_;                  // 0: local part only
-  Buffer<float> conductance_;           // w, one per node
-  Eigen::MatrixXd compliance_;          // S
-  Eigen::VectorXd inverse_root_;        // D^(-1/2), 0 for cells without contact
-  Eigen::LLT<Eigen::MatrixXd> system_;  // of 1 + D^(1/2) S D^(1/2)
+  std::int64_t cells_;
+  bool large_scales_ = true;
+  Buffer<float> conductance_;  // w, one per node
+  std::unique_ptr<CellSystem> system_;
 };
 
 }  // namespace brinell::contact

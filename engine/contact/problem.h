@@ -30,7 +30,8 @@ struct Settings {
   bool mixed_precision = false;        // directions and their displacements in single precision
 };
 
-/// How far a state is from a solution; every entry relative.
+/// How far a state is from a solution; every entry relative. The largest displacement counts at least as what the
+/// mean pressure causes where it acts on one cell: it is more on a free boundary, but may vanish on a periodic one.
 struct Certificate {
   double penetration = 0;      // largest interpenetration / largest displacement
   double complementarity = 0;  // Σ p |deformed gap| / (Σ p · largest displacement)

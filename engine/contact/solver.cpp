@@ -62,10 +62,24 @@ void Solver::separate() {
   approach_ = first_touch_;
 }
 
-void Solver::restore(const double* pressure) {
-  std::copy_n(pressure, p_.size(), p_.data());
-  total_ = 0;
-  for (const double p : p_) total_ += p;
+Solver::State Solver::state() const {
+  State state{Buffer<double>::uninitialised(p_.size()), total_, approach_};
+  std::copy(p_.begin(), p_.end(), state.pressure.begin());
+  return state;
+}
+
+void Solver::restore(const State& state) {
+  separate();
+  if (!(state.total > 0)) {
+    approach_ = state.approach;
+    return;
+  }
+  std::copy(state.pressure.begin(), state.pressure.end(), p_.begin());
+  total_ = state.total;
+  approach_ = state.approach;
+  full_compliance().apply(p_.data(), g_.data());
+  Passes<double>(resources_.backend.arena, resources_.backend.kernels, grid_.nodes())
+      .refresh(scale_, gap_, p_.data(), g_.data());
 }
 
 const Compliance<double>& Solver::full_compliance() {
@@ -84,7 +98,7 @@ Level<Real>& Solver::full_level() {
   }();
   if (level == nullptr) {
     level = std::make_unique<Level<Real>>(resources_, full_compliance(), grid_, boundary_, gap_, scale_,
-                                          State{p_.data(), g_.data()});
+                                          Fields{p_.data(), g_.data()});
   }
   return *level;
 }
@@ -200,11 +214,14 @@ Solution Solver::solve_nested(Drive drive, double target, double tolerance, std:
                       inside.iterations, inside.convolutions + 1});
 }
 
-std::size_t Solver::bytes(const fft::Backend& backend, const Grid& grid, Boundary boundary, bool mixed_precision) {
-  const std::size_t fields = 2 * Buffer<double>::padded_bytes(grid.nodes());
+std::vector<SolverPart> Solver::parts(const fft::Backend& backend, const Grid& grid, Boundary boundary,
+                                      bool mixed_precision) {
   const std::size_t level =
       mixed_precision ? Level<float>::bytes(backend, grid, boundary) : Level<double>::bytes(backend, grid, boundary);
-  return fields + Compliance<double>::bytes(backend, grid, boundary) + level + coarser_grids_bytes(grid, boundary);
+  return {{"pressure and deformed gap", 2 * Buffer<double>::padded_bytes(grid.nodes())},
+          {"compliance: influence coefficients and transform", Compliance<double>::bytes(backend, grid, boundary)},
+          {"directions and preconditioner", level},
+          {"gaps of the coarser grids", coarser_grids_bytes(grid, boundary)}};
 }
 
 }  // namespace brinell::contact

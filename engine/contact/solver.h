@@ -23,6 +23,11 @@ struct Solution {
   std::int32_t convolutions = 0;  // on the full grid, the certificate's included
 };
 
+struct SolverPart {
+  const char* what;
+  std::size_t bytes;
+};
+
 /// Keeps the state of one contact from increment to increment. Lengths in metres, pressures in units of E*.
 class Solver {
  public:
@@ -42,10 +47,20 @@ class Solver {
 
   double first_touch() const { return first_touch_; }  // [m]
 
-  /// Sets the pressure that the next solution starts from, and the displacement that belongs to it.
-  void restore(const double* pressure);
+  /// What the next solution starts from.
+  struct State {
+    Buffer<double> pressure;  // [E*]
+    double total = 0;         // Σ p
+    double approach = 0;      // [m]
+  };
+  State state() const;
 
-  static std::size_t bytes(const fft::Backend& backend, const Grid& grid, Boundary boundary, bool mixed_precision);
+  /// Goes back to an earlier state, to the bits that it had.
+  void restore(const State& state);
+
+  /// What a solver holds, before it is made.
+  static std::vector<SolverPart> parts(const fft::Backend& backend, const Grid& grid, Boundary boundary,
+                                       bool mixed_precision);
 
  private:
   template <class Real>
@@ -69,7 +84,7 @@ class Solver {
   std::unique_ptr<Compliance<double>> compliance_;  // of the full grid; this and the next made when first needed
   std::unique_ptr<Level<double>> in_double_;
   std::unique_ptr<Level<float>> in_single_;
-  double total_ = 0;     // Σ p of the last solution
+  double total_ = 0;     // Σ p of the last solution [E*]
   double approach_ = 0;  // of the last solution [m]
 };
 

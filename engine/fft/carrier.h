@@ -40,7 +40,7 @@ class Carrier {
 
   /// The part of a stored spectrum that belongs to one block, from value(mx, my): the kernel's real transform at
   /// frequencies (mx + 1/4)/n_x, (my + 1/4)/n_y on a free boundary, mx/nx, my/ny (all of them, not only a half) on
-  /// a periodic one; normalisation included.
+  /// a periodic one, where the two factors −i of a kernel odd in both are in the values; normalisation included.
   virtual void arrange(std::int64_t block, FunctionRef<double(std::int64_t mx, std::int64_t my)> value,
                        Real* spectrum) const = 0;
 

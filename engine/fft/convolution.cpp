@@ -27,6 +27,13 @@ std::int64_t rows_of_a_task(std::int64_t nx) {
   return std::max<std::int64_t>(1, 32768 / nx);
 }
 
+/// Frequency m of n stands for m − n in the second half, and for both signs in the middle.
+double sign_of_frequency(std::int64_t m, std::int64_t n, Parity parity) {
+  if (parity == Parity::even) return 1;
+  if (m == 0 || 2 * m == n) return 0;
+  return 2 * m < n ? 1 : -1;
+}
+
 /// Rows are spread over the whole field: with small pages every store would be another page's. A mere wish.
 void prefer_large_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes) {
 #if defined(__linux__)
@@ -156,15 +163,17 @@ Spectrum<Real> Convolution<Real>::spectrum(const double* kernel, Parity parity_x
 }
 
 template <class Real>
-Spectrum<Real> Convolution<Real>::spectrum_of_symbol(
-    FunctionRef<double(std::int64_t kx, std::int64_t ky)> symbol) const {
+Spectrum<Real> Convolution<Real>::spectrum_of_symbol(FunctionRef<double(std::int64_t kx, std::int64_t ky)> symbol,
+                                                     Parity parity_x, Parity parity_y) const {
   const Implementation& my = *implementation_;
   if (my.boundary != Boundary::periodic) {
     fail(Status::wrong_state, "a symbol is for a periodic boundary; this convolution is free");
   }
-  const double scale = 1.0 / (static_cast<double>(my.nx) * static_cast<double>(my.ny));
-  return my.arranged(Parity::even, Parity::even, [&](std::int64_t mx, std::int64_t my_) {
-    return scale * symbol(std::min(mx, my.nx - mx), std::min(my_, my.ny - my_));
+  const bool both_odd = parity_x == Parity::odd && parity_y == Parity::odd;
+  const double scale = (both_odd ? -1.0 : 1.0) / (static_cast<double>(my.nx) * static_cast<double>(my.ny));
+  return my.arranged(parity_x, parity_y, [&](std::int64_t mx, std::int64_t my_) {
+    const double sign = sign_of_frequency(mx, my.nx, parity_x) * sign_of_frequency(my_, my.ny, parity_y);
+    return sign == 0 ? 0.0 : sign * scale * symbol(std::min(mx, my.nx - mx), std::min(my_, my.ny - my_));
   });
 }
 

@@ -1,0 +1,158 @@
+#include <brinell.h>
+
+#include <string>
+
+#include "handles.h"
+#include "structs.h"
+#include "surface/statistics.h"
+
+using namespace brinell;
+using namespace brinell::capi;
+
+namespace {
+
+/// An enumerator of the interface as that of the engine, whose values agree; out of range is refused.
+template <class Enum>
+Enum checked_enum(int32_t value, int32_t last, const char* name) {
+  if (value < 0 || value > last) {
+    fail(Status::invalid_argument,
+         std::string(name) + " = " + std::to_string(value) + ": allowed are 0 to " + std::to_string(last));
+  }
+  return static_cast<Enum>(value);
+}
+
+surface::Shape to_shape(const brn_shape& s) {
+  const auto profile = checked_enum<surface::Profile>(s.profile, BRN_PROFILE_EXACT, "profile");
+  switch (s.kind) {
+    case BRN_SHAPE_PLANE: return surface::Plane{};
+    case BRN_SHAPE_SPHERE: return surface::Sphere{s.radius, profile};
+    case BRN_SHAPE_ELLIPSOID: return surface::Ellipsoid{s.radius_x, s.radius_y, profile};
+    case BRN_SHAPE_CONE: return surface::Cone{s.half_angle, s.tip_radius};
+    case BRN_SHAPE_FLAT_PUNCH: return surface::FlatPunch{s.radius, s.edge_radius, profile};
+    case BRN_SHAPE_ROLLER: return surface::Roller{s.radius, s.straight_length, s.crown_radius, profile};
+    case BRN_SHAPE_SINUSOID: return surface::Sinusoid{s.amplitude, s.wavelength_x, s.wavelength_y};
+    default:
+      fail(Status::invalid_argument,
+           "kind = " + std::to_string(s.kind) + ": allowed are 0 (plane) to " + std::to_string(BRN_SHAPE_SINUSOID));
+  }
+}
+
+struct CheckedHeights {
+  surface::HeightMap map;
+  surface::Detrend detrend;
+};
+
+CheckedHeights to_heights(const brn_heights* heights) {
+  const auto h = read(heights, "heights", brn_heights_init, &brn_heights::values, &brn_heights::nx, &brn_heights::ny,
+                      &brn_heights::stride_x, &brn_heights::stride_y, &brn_heights::detrend);
+  require(h.values, "values");
+  surface::HeightMap map = surface::HeightMap::contiguous(h.values, h.nx, h.ny);
+  if (h.stride_x != 0) map.stride_x = h.stride_x;
+  if (h.stride_y != 0) map.stride_y = h.stride_y;
+  return {map, checked_enum<surface::Detrend>(h.detrend, BRN_DETREND_PLANE, "detrend")};
+}
+
+}  // namespace
+
+extern "C" {
+
+brn_status brn_scene_create(brn_scene** out) {
+  if (out != nullptr) *out = nullptr;
+  return guarded(nullptr, [&] {
+    require(out, "out");
+    *out = new brn_scene();
+  });
+}
+
+void brn_scene_destroy(brn_scene* scene) {
+  delete scene;
+}
+
+const char* brn_scene_message(const brn_scene* scene) {
+  return scene != nullptr ? scene->messages.get() : brn_last_message();
+}
+
+brn_status brn_scene_set_grid(brn_scene* scene, const brn_grid* grid) {
+  return guarded_use(scene, "scene", [&] {
+    const auto g = read(grid, "grid", brn_grid_init, &brn_grid::nx, &brn_grid::ny, &brn_grid::dx, &brn_grid::dy,
+                        &brn_grid::boundary);
+    scene->scene.set_grid({g.nx, g.ny, g.dx, g.dy},
+                          checked_enum<Boundary>(g.boundary, BRN_BOUNDARY_PERIODIC, "boundary"));
+  });
+}
+
+brn_status brn_scene_set_body(brn_scene* scene, int32_t which, const brn_body* body) {
+  return guarded_use(scene, "scene", [&] {
+    const auto b =
+        read(body, "body", brn_body_init, &brn_body::youngs_modulus, &brn_body::poissons_ratio, &brn_body::rigid);
+    const int32_t rigid = checked_enum<int32_t>(b.rigid, 1, "rigid");
+    scene->scene.set_body(checked_enum<scene::Which>(which, BRN_UPPER, "which"),
+                          {rigid != 0, b.youngs_modulus, b.poissons_ratio});
+  });
+}
+
+brn_status brn_scene_add_shape(brn_scene* scene, const brn_shape* shape) {
+  return guarded_use(scene, "scene", [&] {
+    scene->scene.add(
+        to_shape(read(shape, "shape", brn_shape_init, &brn_shape::kind, &brn_shape::profile, &brn_shape::radius,
+                      &brn_shape::radius_x, &brn_shape::radius_y, &brn_shape::half_angle, &brn_shape::tip_radius,
+                      &brn_shape::edge_radius, &brn_shape::straight_length, &brn_shape::crown_radius,
+                      &brn_shape::amplitude, &brn_shape::wavelength_x, &brn_shape::wavelength_y)));
+  });
+}
+
+brn_status brn_scene_add_roughness(brn_scene* scene, const brn_roughness* roughness) {
+  return guarded_use(scene, "scene", [&] {
+    const auto r = read(roughness, "roughness", brn_roughness_init, &brn_roughness::hurst, &brn_roughness::rms_slope,
+                        &brn_roughness::rms_height, &brn_roughness::long_cutoff, &brn_roughness::rolloff,
+                        &brn_roughness::short_cutoff, &brn_roughness::seed);
+    scene->scene.add(
+        surface::Roughness{r.hurst, r.rms_slope, r.rms_height, r.long_cutoff, r.rolloff, r.short_cutoff, r.seed});
+  });
+}
+
+brn_status brn_scene_add_heights(brn_scene* scene, const brn_heights* heights) {
+  return guarded_use(scene, "scene", [&] {
+    const CheckedHeights checked = to_heights(heights);
+    scene->scene.add(checked.map, checked.detrend);
+  });
+}
+
+brn_status brn_height_statistics(const brn_heights* heights, double dx, double dy, brn_statistics* out) {
+  return guarded(nullptr, [&] {
+    check_size(out, "out");
+    const CheckedHeights checked = to_heights(heights);
+    const auto s =
+        surface::height_statistics(checked.map, dx, dy, checked.detrend, Boundary::free, parallel::Arena(1));
+    brn_statistics result;
+    brn_statistics_init(&result);
+    result.sa = s.sa;
+    result.sq = s.sq;
+    result.ssk = s.ssk;
+    result.sku = s.sku;
+    result.sp = s.sp;
+    result.sv = s.sv;
+    result.sz = s.sz;
+    result.sdq = s.sdq;
+    write(result, out, &brn_statistics::sa, &brn_statistics::sq, &brn_statistics::ssk, &brn_statistics::sku,
+          &brn_statistics::sp, &brn_statistics::sv, &brn_statistics::sz, &brn_statistics::sdq);
+  });
+}
+
+brn_status brn_scene_add_step(brn_scene* scene, const brn_step* step) {
+  return guarded_use(scene, "scene", [&] {
+    const auto s = read(step, "step", brn_step_init, &brn_step::drive, &brn_step::increments, &brn_step::target);
+    scene->scene.add(scene::Step{checked_enum<scene::StepDrive>(s.drive, BRN_DRIVE_MEAN_PRESSURE, "drive"),
+                                 s.increments, s.target});
+  });
+}
+
+brn_status brn_scene_set_solver(brn_scene* scene, const brn_solver* solver) {
+  return guarded_use(scene, "scene", [&] {
+    const auto s = read(solver, "solver", brn_solver_init, &brn_solver::tolerance, &brn_solver::max_iterations,
+                        &brn_solver::precision);
+    const int32_t precision = checked_enum<int32_t>(s.precision, BRN_PRECISION_MIXED, "precision");
+    scene->scene.set_solver({s.tolerance, s.max_iterations, precision == BRN_PRECISION_MIXED});
+  });
+}
+}

@@ -1,0 +1,173 @@
+// The saved state of a run: "BRNRUN", version, byte order, fingerprint of the scene, increments, trace, pressure, and
+// a checksum of all that at the end.
+#include <cstring>
+#include <string>
+#include <type_traits>
+
+#include "base/error.h"
+#include "base/fingerprint.h"
+#include "scene/run.h"
+
+namespace brinell::scene {
+
+namespace {
+
+constexpr char kMagic[8] = {'B', 'R', 'N', 'R', 'U', 'N', '\0', '\0'};
+constexpr std::uint32_t kVersion = 1;  // of the layout below
+constexpr std::uint32_t kByteOrder = 0x01020304;
+
+[[noreturn]] void damaged(const std::string& why) {
+  fail(Status::damaged_data, "saved run: " + why);
+}
+
+class Writer {
+ public:
+  template <class T>
+  void put(const T& value) {
+    static_assert(std::is_arithmetic_v<T>);
+    put_bytes(&value, sizeof value);
+  }
+  void put_bytes(const void* data, std::size_t size) {
+    const auto* begin = static_cast<const std::byte*>(data);
+    bytes.insert(bytes.end(), begin, begin + size);
+  }
+  std::vector<std::byte> bytes;
+};
+
+class Reader {
+ public:
+  explicit Reader(std::span<const std::byte> bytes) : left_(bytes) {}
+  template <class T>
+  void get(T& value) {
+    static_assert(std::is_arithmetic_v<T>);
+    get_bytes(&value, sizeof value);
+  }
+  void get_bytes(void* data, std::size_t size) {
+    if (size > left_.size()) damaged("it is truncated");
+    std::memcpy(data, left_.data(), size);
+    left_ = left_.subspan(size);
+  }
+  std::size_t left() const { return left_.size(); }
+
+ private:
+  std::span<const std::byte> left_;
+};
+
+/// Calls visit with every member, for writing and for reading alike.
+template <class I, class Visit>
+void members(I& increment, const Visit& visit) {
+  visit(increment.position.step);
+  visit(increment.position.increment);
+  visit(increment.converged);
+  visit(increment.iterations);
+  visit(increment.convolutions);
+  visit(increment.contact_nodes);
+  visit(increment.normal_force);
+  visit(increment.approach);
+  for (auto& value : increment.centre_of_force) visit(value);
+  visit(increment.first_touch);
+  visit(increment.contact_area);
+  visit(increment.max_pressure);
+  for (auto& value : increment.max_pressure_at) visit(value);
+  visit(increment.mean_gap);
+  visit(increment.certificate.penetration);
+  visit(increment.certificate.complementarity);
+  visit(increment.certificate.tension);
+  visit(increment.certificate.balance);
+  visit(increment.wall_seconds);
+}
+
+template <class P, class Visit>
+void trace_members(P& point, const Visit& visit) {
+  visit(point.position.step);
+  visit(point.position.increment);
+  visit(point.iteration);
+  visit(point.certified);
+  visit(point.nx);
+  visit(point.ny);
+  visit(point.seconds);
+  visit(point.certificate);
+}
+
+std::uint64_t checksum(std::span<const std::byte> bytes) {
+  Fingerprint sum;
+  sum.add_bytes(bytes.data(), bytes.size());
+  return sum.value();
+}
+
+}  // namespace
+
+std::vector<std::byte> Run::save() const {
+  Writer out;
+  out.put_bytes(kMagic, sizeof kMagic);
+  out.put(kVersion);
+  out.put(kByteOrder);
+  out.put(scene_.fingerprint());
+  out.put(static_cast<std::uint64_t>(increments_.size()));
+  const auto put = [&](const auto& value) { out.put(value); };
+  for (const Increment& increment : increments_) members(increment, put);
+  out.put(static_cast<std::uint64_t>(trace_.size()));
+  for (const TracePoint& point : trace_) trace_members(point, put);
+  put(step_origin_.force);
+  put(step_origin_.approach);
+  put(solving_seconds_);
+  for (const double seconds : stage_seconds_) put(seconds);
+  put(last_.total);
+  put(last_.approach);
+  out.put(static_cast<std::uint64_t>(increments_.empty() ? 0 : last_.pressure.size()));
+  if (!increments_.empty()) out.put_bytes(last_.pressure.data(), last_.pressure.size() * sizeof(double));
+  out.put(checksum(out.bytes));
+  return std::move(out.bytes);
+}
+
+std::unique_ptr<Run> Run::load(Engine& engine, const Scene& scene, std::span<const std::byte> bytes) {
+  Reader in(bytes);
+  char magic[sizeof kMagic];
+  in.get_bytes(magic, sizeof magic);
+  if (std::memcmp(magic, kMagic, sizeof magic) != 0) damaged("the data are not of a saved run");
+  std::uint32_t version = 0;
+  std::uint32_t byte_order = 0;
+  in.get(version);
+  in.get(byte_order);
+  if (byte_order != kByteOrder) damaged("it was saved on a machine of another byte order");
+  if (version != kVersion) {
+    damaged("its layout has version " + std::to_string(version) + "; this release reads version " +
+            std::to_string(kVersion));
+  }
+  if (bytes.size() < sizeof(std::uint64_t)) damaged("it is truncated");
+  std::uint64_t sum = 0;
+  std::memcpy(&sum, bytes.data() + bytes.size() - sizeof sum, sizeof sum);
+  if (sum != checksum(bytes.first(bytes.size() - sizeof sum)))
+    damaged("its checksum does not match: it is truncated or altered");
+
+  auto run = std::make_unique<Run>(engine, scene);
+  std::uint64_t fingerprint = 0;
+  in.get(fingerprint);
+  if (fingerprint != scene.fingerprint()) damaged("it belongs to another scene");
+  std::uint64_t count = 0;
+  in.get(count);
+  if (count > static_cast<std::uint64_t>(run->total())) damaged("it holds more increments than the scene has");
+  const auto get = [&](auto& value) { in.get(value); };
+  run->increments_.resize(count);
+  for (Increment& increment : run->increments_) members(increment, get);
+  in.get(count);
+  if (count > in.left() / sizeof(double)) damaged("it is truncated");
+  run->trace_.resize(count);
+  for (TracePoint& point : run->trace_) trace_members(point, get);
+  get(run->step_origin_.force);
+  get(run->step_origin_.approach);
+  get(run->solving_seconds_);
+  for (double& seconds : run->stage_seconds_) get(seconds);
+  get(run->last_.total);
+  get(run->last_.approach);
+  in.get(count);
+  if (run->increments_.empty()) return run;
+  if (count != scene.grid().nodes()) damaged("its grid is not the scene's");
+  run->last_.pressure = Buffer<double>::uninitialised(count);
+  in.get_bytes(run->last_.pressure.data(), count * sizeof(double));
+  run->prepare();
+  run->solver_->restore(run->last_);
+  return run;
+}
+
+}  // namespace brinell::scene

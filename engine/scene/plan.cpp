@@ -1,0 +1,37 @@
+#include "scene/plan.h"
+
+#include "base/error.h"
+#include "contact/solver.h"
+
+namespace brinell::scene {
+
+namespace {
+
+void refuse_beyond(std::uint64_t limit, double bytes, const Grid& grid, const char* how) {
+  if (bytes <= static_cast<double>(limit)) return;
+  fail(Status::too_large, "the grid of " + std::to_string(grid.nx) + " x " + std::to_string(grid.ny) +
+                              " nodes needs " + how + text(bytes) + " bytes; allowed are " + std::to_string(limit));
+}
+
+}  // namespace
+
+Plan::Plan(Engine& engine, const Scene& scene) {
+  const Grid& grid = scene.grid();
+  // Fields alone, before even the transforms of such a grid are planned.
+  constexpr double kFewestFields = 6;
+  refuse_beyond(engine.memory_limit(),
+                kFewestFields * sizeof(double) * static_cast<double>(grid.nx) * static_cast<double>(grid.ny), grid,
+                "at least ");
+
+  const std::uint64_t field = Buffer<double>::padded_bytes(grid.nodes());
+  items.push_back({"surface", "undeformed gap", field});
+  for (const contact::SolverPart& part :
+       contact::Solver::parts(engine.resources().backend, grid, scene.boundary(), scene.solver().mixed_precision)) {
+    items.push_back({"contact", part.what, part.bytes});
+  }
+  items.push_back({"contact", "last solved pressure, to go back to", field});
+  for (const PlanItem& item : items) memory_bytes += item.bytes;
+  refuse_beyond(engine.memory_limit(), static_cast<double>(memory_bytes), grid, "");
+}
+
+}  // namespace brinell::scene

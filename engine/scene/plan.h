@@ -1,0 +1,27 @@
+// What a run will do and hold, known before anything is allocated.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "scene/engine.h"
+#include "scene/scene.h"
+
+namespace brinell::scene {
+
+struct PlanItem {
+  const char* stage;  // "surface", "contact"
+  std::string what;
+  std::uint64_t bytes;
+};
+
+struct Plan {
+  std::vector<PlanItem> items;
+  std::uint64_t memory_bytes = 0;  // of all items
+
+  /// Throws Status::too_large if the scene needs more than the engine allows.
+  Plan(Engine& engine, const Scene& scene);
+};
+
+}  // namespace brinell::scene

@@ -1,0 +1,189 @@
+#include "scene/run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/error.h"
+#include "surface/shapes.h"
+
+namespace brinell::scene {
+
+namespace {
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+struct PressureSums {
+  double nodes = 0;
+  double force = 0, moment_x = 0, moment_y = 0;  // Σ p, Σ p x, Σ p y
+  double gap = 0;
+  double largest = 0;
+  std::int64_t largest_at = -1;
+};
+
+}  // namespace
+
+const char* name(Stage stage) {
+  return stage == Stage::surface ? "surface" : "contact";
+}
+
+Run::Run(Engine& engine, const Scene& scene)
+    : engine_(engine),
+      scene_((scene.check_complete(), scene)),
+      plan_(engine, scene),
+      contact_modulus_(scene.contact_modulus()) {}
+
+/// Sums the surfaces up and sets up the solver.
+void Run::prepare() {
+  if (solver_ != nullptr) return;
+  auto start = Clock::now();
+  const Grid& grid = scene_.grid();
+  Buffer<double> gap(grid.nodes());
+  for (const SurfaceEntry& entry : scene_.surfaces()) {
+    if (const auto* shape = std::get_if<surface::Shape>(&entry)) {
+      surface::add_to_gap(*shape, {}, grid, gap, engine_.arena());
+    } else if (const auto* roughness = std::get_if<surface::Roughness>(&entry)) {
+      surface::add_to_gap(*roughness, {}, grid, gap, engine_.arena());
+    } else {
+      const Heights& heights = std::get<Heights>(entry);
+      surface::add_to_gap(surface::HeightMap::contiguous(heights.values->data(), grid.nx, grid.ny), heights.detrend,
+                          grid, gap, engine_.arena());
+    }
+  }
+  gap_ = std::move(gap);
+  stage_seconds_[static_cast<int>(Stage::surface)] += seconds_since(start);
+  start = Clock::now();
+  solver_ = std::make_unique<contact::Solver>(engine_.resources(), grid, scene_.boundary(), gap_.data(),
+                                              scene_.solver().mixed_precision);
+  stage_seconds_[static_cast<int>(Stage::contact)] += seconds_since(start);
+  if (increments_.empty()) {
+    step_origin_ = {0, std::min(0.0, solver_->first_touch())};
+    last_ = solver_->state();
+  }
+}
+
+const Increment& Run::advance(const std::function<bool(const Progress&)>& proceed) {
+  const auto solved = static_cast<std::int32_t>(increments_.size());
+  if (solved == total()) {
+    fail(Status::wrong_state, "all " + std::to_string(total()) + " increments of the run are solved");
+  }
+  prepare();
+  const auto start = Clock::now();
+  const Position position = position_of(scene_.steps(), solved);
+  if (position.increment == 0 && solved > 0) {
+    step_origin_ = {increments_.back().normal_force, increments_.back().approach};
+  }
+  const Target target = target_of(scene_.steps()[static_cast<std::size_t>(position.step)], position.increment,
+                                  step_origin_, scene_.grid());
+
+  const std::size_t traced = trace_.size();
+  const auto observe = [&](const contact::Report& report) {
+    const double seconds = seconds_since(start);
+    trace_.push_back({position, report.iteration, report.certified ? 1 : 0, report.grid.nx, report.grid.ny,
+                      solving_seconds_ + seconds, report.certificate});
+    return !proceed || proceed({position, solved, total(), report.iteration, report.certificate, seconds});
+  };
+  contact::Solution solution;
+  try {
+    const double unit_force = contact_modulus_ * scene_.grid().cell_area();
+    solution =
+        solver_->solve(target.drive, target.drive == contact::Drive::force ? target.value / unit_force : target.value,
+                       scene_.solver().tolerance, scene_.solver().max_iterations, observe);
+  } catch (...) {
+    trace_.resize(traced);
+    solver_->restore(last_);
+    throw;
+  }
+  increments_.push_back(summary(solution, position));
+  last_ = solver_->state();
+
+  const double seconds = seconds_since(start);
+  increments_.back().wall_seconds = seconds;
+  solving_seconds_ += seconds;
+  stage_seconds_[static_cast<int>(Stage::contact)] += seconds;
+  return increments_.back();
+}
+
+Increment Run::summary(const contact::Solution& solution, const Position& position) {
+  const Grid& grid = scene_.grid();
+  const double* p = solver_->pressure().data();
+  const double* g = solver_->deformed_gap().data();
+  const auto sums = contact::ordered_sum<PressureSums>(
+      engine_.arena(), grid.ny, 32,
+      [](PressureSums& total, const PressureSums& part) {
+        total.nodes += part.nodes;
+        total.force += part.force;
+        total.moment_x += part.moment_x;
+        total.moment_y += part.moment_y;
+        total.gap += part.gap;
+        if (part.largest > total.largest) {
+          total.largest = part.largest;
+          total.largest_at = part.largest_at;
+        }
+      },
+      [&](std::int64_t begin, std::int64_t end) {
+        PressureSums part;
+        for (std::int64_t j = begin; j < end; ++j) {
+          for (std::int64_t i = 0; i < grid.nx; ++i) {
+            const std::int64_t n = j * grid.nx + i;
+            part.gap += g[n];
+            if (!(p[n] > 0)) continue;
+            part.nodes += 1;
+            part.force += p[n];
+            part.moment_x += p[n] * grid.x(i);
+            part.moment_y += p[n] * grid.y(j);
+            if (p[n] > part.largest) {
+              part.largest = p[n];
+              part.largest_at = n;
+            }
+          }
+        }
+        return part;
+      });
+
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  Increment increment;
+  increment.position = position;
+  increment.converged = solution.converged;
+  increment.iterations = solution.iterations;
+  increment.convolutions = solution.convolutions;
+  increment.contact_nodes = static_cast<std::int64_t>(sums.nodes);
+  increment.normal_force = sums.force * contact_modulus_ * grid.cell_area();
+  increment.approach = solution.approach;
+  increment.centre_of_force[0] = sums.force > 0 ? sums.moment_x / sums.force : none;
+  increment.centre_of_force[1] = sums.force > 0 ? sums.moment_y / sums.force : none;
+  increment.first_touch = solver_->first_touch();
+  increment.contact_area = sums.nodes * grid.cell_area();
+  increment.max_pressure = sums.largest * contact_modulus_;
+  increment.max_pressure_at[0] = sums.largest_at >= 0 ? grid.x(sums.largest_at % grid.nx) : none;
+  increment.max_pressure_at[1] = sums.largest_at >= 0 ? grid.y(sums.largest_at / grid.nx) : none;
+  increment.mean_gap = sums.gap / static_cast<double>(grid.nodes()) * grid.dx - solution.approach;
+  increment.certificate = solution.certificate;
+  return increment;
+}
+
+void Run::copy_field(Field field, std::span<double> values) {
+  if (field == Field::undeformed_gap) {
+    prepare();
+    std::copy(gap_.begin(), gap_.end(), values.begin());
+    return;
+  }
+  if (increments_.empty()) fail(Status::wrong_state, "no increment is solved yet: there is no field");
+  prepare();
+  const Buffer<double>& p = solver_->pressure();
+  const Buffer<double>& g = solver_->deformed_gap();
+  const double unit = scene_.grid().dx;
+  const double approach = increments_.back().approach;
+  for (std::size_t n = 0; n < gap_.size(); ++n) {
+    switch (field) {
+      case Field::pressure: values[n] = p[n] * contact_modulus_; break;
+      case Field::gap: values[n] = g[n] * unit - approach; break;
+      case Field::displacement: values[n] = g[n] * unit - gap_[n]; break;
+      case Field::undeformed_gap: break;
+    }
+  }
+}
+
+}  // namespace brinell::scene

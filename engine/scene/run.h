@@ -1,0 +1,111 @@
+// A planned scene, solved increment by increment.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "contact/solver.h"
+#include "scene/engine.h"
+#include "scene/load_history.h"
+#include "scene/plan.h"
+#include "scene/scene.h"
+
+namespace brinell::scene {
+
+/// Result of one solved increment. NaN: does not exist.
+struct Increment {
+  Position position;
+  bool converged = false;
+  std::int32_t iterations = 0;
+  std::int32_t convolutions = 0;
+  std::int64_t contact_nodes = 0;
+  double normal_force = 0;             // [N]
+  double approach = 0;                 // [m]
+  double centre_of_force[2] = {0, 0};  // [m]
+  double first_touch = 0;              // [m]
+  double contact_area = 0;             // [m²]
+  double max_pressure = 0;             // [Pa]
+  double max_pressure_at[2] = {0, 0};  // [m]
+  double mean_gap = 0;                 // [m]
+  contact::Certificate certificate;
+  double wall_seconds = 0;
+};
+
+struct TracePoint {
+  Position position;
+  std::int32_t iteration = 0;
+  std::int32_t certified = 0;
+  std::int64_t nx = 0, ny = 0;
+  double seconds = 0;  // of solving, since the run began
+  double certificate = 0;
+};
+
+struct Progress {
+  Position position;
+  std::int32_t solved = 0, total = 0;
+  std::int32_t iteration = 0;
+  double estimate = 0;
+  double seconds = 0;
+};
+
+enum class Field : std::int32_t { pressure = 1, gap = 2, displacement = 3, undeformed_gap = 4 };
+
+enum class Stage : std::int32_t { surface = 0, contact = 1 };
+inline constexpr std::int32_t kStages = 2;
+const char* name(Stage stage);
+
+class Run {
+ public:
+  /// Plans; allocates no fields.
+  Run(Engine& engine, const Scene& scene);
+
+  const Plan& plan() const { return plan_; }
+  double tolerance() const { return scene_.solver().tolerance; }
+  std::int32_t total() const { return total_increments(scene_.steps()); }
+  const std::vector<Increment>& increments() const { return increments_; }
+  const std::vector<TracePoint>& trace() const { return trace_; }
+  double stage_seconds(Stage stage) const { return stage_seconds_[static_cast<int>(stage)]; }
+
+  /// Solves the next increment and returns it, converged or not. Returns false from `proceed` to cancel: throws
+  /// Status::cancelled and the state is that after the last solved increment.
+  const Increment& advance(const std::function<bool(const Progress&)>& proceed);
+
+  std::size_t field_size() const { return scene_.grid().nodes(); }
+
+  /// Copies a field of the last solved increment.
+  void copy_field(Field field, std::span<double> values);
+
+  /// The state as bytes: versioned, with a fingerprint of the scene and a checksum.
+  std::vector<std::byte> save() const;
+
+  /// A run that goes on where a saved one stopped. Throws Status::damaged_data.
+  static std::unique_ptr<Run> load(Engine& engine, const Scene& scene, std::span<const std::byte> bytes);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void prepare();
+  Increment summary(const contact::Solution& solution, const Position& position);
+
+  Engine& engine_;
+  Scene scene_;
+  Plan plan_;
+  double contact_modulus_;
+  Buffer<double> gap_;  // [m], empty until the first increment
+  std::unique_ptr<contact::Solver> solver_;
+
+  // What the next increment starts from:
+  Origin step_origin_;           // of the step under way
+  contact::Solver::State last_;  // after the last solved increment
+  std::vector<Increment> increments_;
+  std::vector<TracePoint> trace_;
+  double solving_seconds_ = 0;
+  double stage_seconds_[kStages] = {0, 0};
+};
+
+}  // namespace brinell::scene

@@ -1,0 +1,208 @@
+#include "scene/scene.h"
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "base/error.h"
+#include "base/fingerprint.h"
+#include "parallel/arena.h"
+
+namespace brinell::scene {
+
+namespace {
+
+constexpr double kLeastTolerance = 1e-14;
+constexpr double kLargestTolerance = 0.1;
+
+void require(bool holds, Status status, const std::string& message) {
+  if (!holds) fail(status, message);
+}
+
+void require_positive(const char* name, double value, const char* unit) {
+  require(std::isfinite(value) && value > 0, Status::invalid_argument,
+          std::string(name) + " = " + text(value) + " " + unit + ": must be positive and finite");
+}
+
+void add_members(Fingerprint& f, const surface::Plane&) {
+  f.add('p');
+}
+void add_members(Fingerprint& f, const surface::Sphere& s) {
+  f.add(s.radius);
+  f.add(static_cast<std::int32_t>(s.profile));
+}
+void add_members(Fingerprint& f, const surface::Ellipsoid& s) {
+  f.add(s.radius_x);
+  f.add(s.radius_y);
+  f.add(static_cast<std::int32_t>(s.profile));
+}
+void add_members(Fingerprint& f, const surface::Cone& s) {
+  f.add(s.half_angle);
+  f.add(s.tip_radius);
+}
+void add_members(Fingerprint& f, const surface::FlatPunch& s) {
+  f.add(s.radius);
+  f.add(s.edge_radius);
+  f.add(static_cast<std::int32_t>(s.profile));
+}
+void add_members(Fingerprint& f, const surface::Roller& s) {
+  f.add(s.radius);
+  f.add(s.straight_length);
+  f.add(s.crown_radius);
+  f.add(static_cast<std::int32_t>(s.profile));
+}
+void add_members(Fingerprint& f, const surface::Sinusoid& s) {
+  f.add(s.amplitude);
+  f.add(s.wavelength_x);
+  f.add(s.wavelength_y);
+}
+void add_members(Fingerprint& f, const surface::Shape& shape) {
+  f.add(shape.index());
+  std::visit([&](const auto& s) { add_members(f, s); }, shape);
+}
+void add_members(Fingerprint& f, const surface::Roughness& r) {
+  for (const double value : {r.hurst, r.rms_slope, r.rms_height, r.long_cutoff, r.rolloff, r.short_cutoff})
+    f.add(value);
+  f.add(r.seed);
+}
+void add_members(Fingerprint& f, const Heights& h) {
+  f.add(static_cast<std::int32_t>(h.detrend));
+  f.add_bytes(h.values->data(), h.values->size() * sizeof(double));
+}
+
+}  // namespace
+
+void Scene::set_grid(const Grid& grid, Boundary boundary) {
+  for (const auto& [name, nodes] : {std::pair{"nx", grid.nx}, std::pair{"ny", grid.ny}}) {
+    require(nodes >= 1, Status::invalid_argument,
+            std::string(name) + " = " + std::to_string(nodes) + " nodes: must be at least 1");
+  }
+  constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max() / static_cast<std::int64_t>(sizeof(double));
+  require(grid.nx <= most / grid.ny, Status::too_large,
+          "nodes = " + std::to_string(grid.nx) + " x " + std::to_string(grid.ny) +
+              ": the bytes of one field overflow 64 bits");
+  require_positive("spacing dx", grid.dx, "m");
+  require_positive("spacing dy", grid.dy, "m");
+  require(boundary == Boundary::free || boundary == Boundary::periodic, Status::invalid_argument,
+          "boundary = " + std::to_string(static_cast<std::int32_t>(boundary)) +
+              ": allowed are 0 (free) and 1 (periodic)");
+  bool holds_heights = false;
+  for (const SurfaceEntry& entry : surfaces_) holds_heights = holds_heights || std::holds_alternative<Heights>(entry);
+  require(!holds_heights || (grid.nx == grid_.nx && grid.ny == grid_.ny), Status::wrong_state,
+          "nodes = " + std::to_string(grid.nx) + " x " + std::to_string(grid.ny) +
+              ": the grid cannot change, the scene already holds heights on " + std::to_string(grid_.nx) + " x " + std::to_string(grid_.ny) +
+              " nodes");
+  grid_ = grid;
+  boundary_ = boundary;
+}
+
+void Scene::set_body(Which which, const Body& body) {
+  require(which == Which::lower || which == Which::upper, Status::invalid_argument,
+          "body = " + std::to_string(static_cast<std::int32_t>(which)) + ": allowed are 0 (lower) and 1 (upper)");
+  if (!body.rigid) {
+    require_positive("youngs_modulus", body.youngs_modulus, "Pa");
+    require(body.poissons_ratio > -1 && body.poissons_ratio < 0.5, Status::invalid_argument,
+            "poissons_ratio = " + text(body.poissons_ratio) + ": must lie between -1 and 0.5, both excluded");
+  }
+  bodies_[static_cast<int>(which)] = body;
+}
+
+void Scene::add(const surface::Shape& shape) {
+  surface::check(shape);
+  surfaces_.emplace_back(shape);
+}
+
+void Scene::add(const surface::Roughness& roughness) {
+  require(grid_.nx > 0, Status::wrong_state, "roughness needs the grid: set it first");
+  surfaces_.emplace_back(surface::checked(roughness, grid_));
+}
+
+void Scene::add(const surface::HeightMap& heights, surface::Detrend detrend) {
+  require(grid_.nx > 0, Status::wrong_state, "heights need the grid: set it first");
+  require(heights.nx == grid_.nx && heights.ny == grid_.ny, Status::invalid_argument,
+          "heights have " + std::to_string(heights.nx) + " x " + std::to_string(heights.ny) +
+              " nodes, the grid has " + std::to_string(grid_.nx) + " x " + std::to_string(grid_.ny));
+  const parallel::Arena alone(1);
+  surface::trend_of(heights, detrend, alone);  // refuses what is not finite
+  auto copy = Buffer<double>::uninitialised(grid_.nodes());
+  for (std::int64_t j = 0; j < heights.ny; ++j) {
+    for (std::int64_t i = 0; i < heights.nx; ++i) {
+      copy[static_cast<std::size_t>(j * heights.nx + i)] = heights.at(i, j);
+    }
+  }
+  surfaces_.emplace_back(Heights{std::make_shared<const Buffer<double>>(std::move(copy)), detrend});
+}
+
+void Scene::add(const Step& step) {
+  require(
+      step.drive == StepDrive::force || step.drive == StepDrive::approach || step.drive == StepDrive::mean_pressure,
+      Status::invalid_argument,
+      "drive = " + std::to_string(static_cast<std::int32_t>(step.drive)) +
+          ": a step needs exactly one of 1 (force), 2 (approach), 3 (mean pressure)");
+  require(step.increments >= 1, Status::invalid_argument,
+          "increments = " + std::to_string(step.increments) + ": must be at least 1");
+  const char* name = step.drive == StepDrive::force      ? "target (normal_force)"
+                     : step.drive == StepDrive::approach ? "target (approach)"
+                                                         : "target (mean_pressure)";
+  require(std::isfinite(step.target), Status::invalid_argument,
+          std::string(name) + " = " + text(step.target) + ": must be finite");
+  require(step.drive == StepDrive::approach || step.target >= 0, Status::invalid_argument,
+          std::string(name) + " = " + text(step.target) + (step.drive == StepDrive::force ? " N" : " Pa") +
+              ": must not be negative: bodies press on each other, they do not stick");
+  steps_.push_back(step);
+}
+
+void Scene::set_solver(const SolverSettings& solver) {
+  require(solver.tolerance >= kLeastTolerance && solver.tolerance <= kLargestTolerance, Status::invalid_argument,
+          "tolerance = " + text(solver.tolerance) + ": must lie between " + text(kLeastTolerance) + " and " +
+              text(kLargestTolerance));
+  require(solver.max_iterations >= 1, Status::invalid_argument,
+          "max_iterations = " + std::to_string(solver.max_iterations) + ": must be at least 1");
+  solver_ = solver;
+}
+
+double Scene::contact_modulus() const {
+  double compliance = 0;
+  for (const Body& body : bodies_) {
+    if (!body.rigid) compliance += (1 - body.poissons_ratio * body.poissons_ratio) / body.youngs_modulus;
+  }
+  require(compliance > 0, Status::invalid_scene,
+          "both bodies are rigid: give at least one of them youngs_modulus and poissons_ratio");
+  return 1 / compliance;
+}
+
+void Scene::check_complete() const {
+  require(grid_.nx > 0, Status::invalid_scene, "the scene has no grid: set its nodes and spacing");
+  require(!steps_.empty(), Status::invalid_scene, "the scene has no step: give it a force or an approach");
+  contact_modulus();
+  for (std::size_t n = 0; n < steps_.size(); ++n) {
+    require(
+        steps_[n].drive != StepDrive::mean_pressure || boundary_ == Boundary::periodic, Status::invalid_scene,
+        "step " + std::to_string(n) + ": mean_pressure needs a periodic boundary; prescribe normal_force instead");
+  }
+}
+
+std::uint64_t Scene::fingerprint() const {
+  Fingerprint f;
+  f.add(grid_.nx);
+  f.add(grid_.ny);
+  f.add(grid_.dx);
+  f.add(grid_.dy);
+  f.add(static_cast<std::int32_t>(boundary_));
+  f.add(contact_modulus());
+  for (const SurfaceEntry& entry : surfaces_) {
+    f.add(entry.index());
+    std::visit([&](const auto& e) { add_members(f, e); }, entry);
+  }
+  for (const Step& step : steps_) {
+    f.add(static_cast<std::int32_t>(step.drive));
+    f.add(step.increments);
+    f.add(step.target);
+  }
+  f.add(solver_.tolerance);
+  f.add(solver_.max_iterations);
+  f.add(solver_.mixed_precision);
+  return f.value();
+}
+
+}  // namespace brinell::scene

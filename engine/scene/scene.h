@@ -1,0 +1,82 @@
+// A description of what is to be solved: grid, bodies, surfaces, load history, solver. Each part is checked as it is
+// set; that the parts fit together is checked when a run is made.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <variant>
+#include <vector>
+
+#include "base/buffer.h"
+#include "base/grid.h"
+#include "surface/height_map.h"
+#include "surface/roughness.h"
+#include "surface/shapes.h"
+
+namespace brinell::scene {
+
+struct Body {
+  bool rigid = true;
+  double youngs_modulus = 0;  // [Pa]
+  double poissons_ratio = 0;
+};
+
+/// A caller's heights, copied contiguously.
+struct Heights {
+  std::shared_ptr<const Buffer<double>> values;  // nx·ny, row-major
+  surface::Detrend detrend = surface::Detrend::none;
+};
+
+using SurfaceEntry = std::variant<surface::Shape, surface::Roughness, Heights>;
+
+enum class StepDrive : std::int32_t { none = 0, force = 1, approach = 2, mean_pressure = 3 };
+
+struct Step {
+  StepDrive drive = StepDrive::none;
+  std::int32_t increments = 1;
+  double target = 0;  // [N], [m] or [Pa]
+};
+
+struct SolverSettings {
+  double tolerance = 1e-8;
+  std::int32_t max_iterations = 2000;
+  bool mixed_precision = false;
+};
+
+enum class Which : std::int32_t { lower = 0, upper = 1 };
+
+class Scene {
+ public:
+  void set_grid(const Grid& grid, Boundary boundary);
+  void set_body(Which which, const Body& body);
+  void add(const surface::Shape& shape);
+  void add(const surface::Roughness& roughness);
+  void add(const surface::HeightMap& heights, surface::Detrend detrend);
+  void add(const Step& step);
+  void set_solver(const SolverSettings& solver);
+
+  const Grid& grid() const { return grid_; }
+  Boundary boundary() const { return boundary_; }
+  const std::vector<SurfaceEntry>& surfaces() const { return surfaces_; }
+  const std::vector<Step>& steps() const { return steps_; }
+  const SolverSettings& solver() const { return solver_; }
+
+  /// 1/E* = (1−ν₁²)/E₁ + (1−ν₂²)/E₂ [Pa]. Throws Status::invalid_scene if both bodies are rigid.
+  double contact_modulus() const;
+
+  /// Throws Status::invalid_scene if something is missing or does not fit together.
+  void check_complete() const;
+
+  /// Tells scenes apart: equal for equal descriptions.
+  std::uint64_t fingerprint() const;
+
+ private:
+  Grid grid_;
+  Boundary boundary_ = Boundary::free;
+  Body bodies_[2];
+  std::vector<SurfaceEntry> surfaces_;
+  std::vector<Step> steps_;
+  SolverSettings solver_;
+};
+
+}  // namespace brinell::scene
