@@ -44,6 +44,11 @@ void Timing::measure() {
   ratios_.push_back(2 * seconds / (before + after));
 }
 
+void Timing::forget() {
+  seconds_.clear();
+  ratios_.clear();
+}
+
 double seconds_now(const brn_engine* engine) {
   std::timespec now{};
   clock_gettime(brn_engine_threads(engine) > 1 ? CLOCK_MONOTONIC : CLOCK_PROCESS_CPUTIME_ID, &now);

@@ -27,6 +27,9 @@ class Timing {
   /// The calibration, the thing, the calibration.
   void measure();
 
+  /// All that was measured.
+  void forget();
+
   Band ratio() const { return median_band(ratios_); }
   double seconds() const { return median_band(seconds_).middle; }
   const char* calibration() const { return brn_benchmark_name(calibration_); }
