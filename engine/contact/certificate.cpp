@@ -33,10 +33,10 @@ Certificate certificate_of(const Evidence& evidence, Drive drive, double target)
 }
 
 Certified certify(const parallel::Arena& arena, const Compliance<double>& compliance, Passes<double>& passes,
-                  std::size_t nodes, const double* gap, double scale, const double* p, double* g, Drive drive,
+                  std::size_t nodes, const UndeformedGap& gap, const double* p, double* g, Drive drive,
                   double target) {
   compliance.apply(p, g);
-  const simd::RefreshSums fresh = passes.refresh(scale, gap, p, g);
+  const simd::RefreshSums fresh = passes.refresh(gap, p, g);
   const double approach = drive == Drive::force && fresh.active > 0 ? fresh.gap / fresh.active : target;
   const auto sums = ordered_sum<PressureSums>(
       arena, static_cast<std::int64_t>(nodes), 1 << 14,

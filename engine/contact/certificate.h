@@ -26,7 +26,7 @@ struct Certified {
   Certificate certificate;
 };
 Certified certify(const parallel::Arena& arena, const Compliance<double>& compliance, Passes<double>& passes,
-                  std::size_t nodes, const double* gap, double scale, const double* p, double* g, Drive drive,
+                  std::size_t nodes, const UndeformedGap& gap, const double* p, double* g, Drive drive,
                   double target);
 
 }  // namespace brinell::contact

@@ -30,25 +30,40 @@ constexpr int kPatience = 150;
 template <class Real>
 constexpr double kBelieved = 64 * std::numeric_limits<Real>::epsilon();
 
+template <class Real>
+std::unique_ptr<Compliance<float>> make_fast(const Resources& resources, const Grid& grid, Boundary boundary) {
+  if constexpr (std::is_same_v<Real, double>) {
+    return nullptr;
+  } else {
+    return std::make_unique<Compliance<float>>(resources, grid, boundary);
+  }
+}
+
+/// The scratch that the iteration's own convolution shares with the preconditioner.
+fft::Workspace<double>& workspace_of(const Compliance<double>& exact, const Compliance<float>*, double) {
+  return exact.workspace();
+}
+fft::Workspace<float>& workspace_of(const Compliance<double>&, const Compliance<float>* fast, float) {
+  return fast->workspace();
+}
+
 }  // namespace
 
 template <class Real>
 Level<Real>::Level(const Resources& resources, const Compliance<double>& exact, const Grid& grid, Boundary boundary,
-                   const double* gap, double scale, Fields fields)
+                   const UndeformedGap& gap, Fields fields)
     : arena_(resources.backend.arena),
       grid_(grid),
       gap_(gap),
-      scale_(scale),
       fields_(fields),
       self_compliance_(influence::Displacement(grid.dx, grid.dy)(0, 0)),
       exact_(exact),
-      preconditioner_(resources, grid, boundary),
+      fast_(make_fast<Real>(resources, grid, boundary)),
+      preconditioner_(resources, grid, boundary, workspace_of(exact, fast_.get(), Real{})),
       passes_(arena_, resources.backend.kernels, grid.nodes()),
       v_(grid.nodes()),
       q_(grid.nodes()),
-      z_(Buffer<Real>::uninitialised(grid.nodes())) {
-  if constexpr (std::is_same_v<Real, float>) fast_.emplace(resources, grid, boundary);
-}
+      z_(Buffer<Real>::uninitialised(grid.nodes())) {}
 
 /// Clipped and rescaled pressure, its displacement by a fresh convolution, and all that follows from them.
 template <class Real>
@@ -57,7 +72,7 @@ void Level<Real>::refresh(LevelResult& result) {
   if (drive_ == Drive::force && total_ != target_) total_ = passes_.clip(target_ / total_, fields_.p);
   exact_.apply(fields_.p, fields_.g);
   ++result.convolutions;
-  const simd::RefreshSums fresh = passes_.refresh(scale_, gap_, fields_.p, fields_.g);
+  const simd::RefreshSums fresh = passes_.refresh(gap_, fields_.p, fields_.g);
   sums_ = {fresh.active, fresh.gap, fresh.min_gap, 0};
   const double mean_pressure = total_ / static_cast<double>(grid_.nodes());
   displacement_ = std::max(fresh.displacement, self_compliance_ * mean_pressure);
@@ -73,7 +88,7 @@ Certificate Level<Real>::estimate(double complementarity) const {
 
 template <class Real>
 void Level<Real>::correct_start(Drive drive, double target) {
-  const simd::RefreshSums start = passes_.refresh(scale_, gap_, fields_.p, fields_.g);
+  const simd::RefreshSums start = passes_.refresh(gap_, fields_.p, fields_.g);
   if (start.active == 0) return;
   const double approach = drive == Drive::force ? start.gap / start.active : target;
   passes_.residual(approach, 0, fields_.p, fields_.g, z_.data());
@@ -132,7 +147,8 @@ LevelResult Level<Real>::solve(Drive drive, double target, double tolerance, std
         best = certificate.worst();
         idle = 0;
       }
-      if (result.converged || idle > kPatience || result.iterations >= max_iterations || in_contact == 0) return result;
+      if (result.converged || idle > kPatience || result.iterations >= max_iterations || in_contact == 0)
+        return result;
     } else {
       const double error = std::max(certificate.penetration, certificate.complementarity);
       const double allowed = kTensionToError * std::min(error, kLargeError);

@@ -17,7 +17,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
+#include <memory>
 
 #include "base/buffer.h"
 #include "contact/certificate.h"
@@ -48,9 +48,9 @@ struct LevelResult {
 template <class Real>
 class Level {
  public:
-  /// gap · scale is the undeformed gap h; exact is the compliance of this grid.
+  /// exact is the compliance of this grid.
   Level(const Resources& resources, const Compliance<double>& exact, const Grid& grid, Boundary boundary,
-        const double* gap, double scale, Fields fields);
+        const UndeformedGap& gap, Fields fields);
 
   /// One preconditioned step from a start whose displacement is known approximately: on entry p is the pressure and g
   /// that displacement. It brings in what a coarser grid could not know.
@@ -68,13 +68,12 @@ class Level {
 
   const parallel::Arena& arena_;
   Grid grid_;
-  const double* gap_;
-  double scale_;
+  UndeformedGap gap_;
   Fields fields_;
   double self_compliance_;
 
   const Compliance<double>& exact_;
-  std::optional<Compliance<float>> fast_;  // Real = float
+  std::unique_ptr<Compliance<float>> fast_;  // Real = float
   Preconditioner<Real> preconditioner_;
   Passes<Real> passes_;
   Buffer<Real> v_, q_, z_;

@@ -104,7 +104,7 @@ void prolong_pressure(const Box& coarse_box, const double* coarse, const Box& fi
   });
 }
 
-void prolong_displacement(const Box& coarse_box, const double* coarse_g, const double* coarse_gap, double scale,
+void prolong_displacement(const Box& coarse_box, const double* coarse_g, const UndeformedGap& coarse_gap,
                           const Box& fine_box, double* fine, const parallel::Arena& arena) {
   // A fine node lies a quarter of a coarse cell from its cell's centre: weights 3/4 and 1/4.
   const auto neighbours = [](std::int64_t fine_index, std::int64_t first, std::int64_t count) {
@@ -117,7 +117,7 @@ void prolong_displacement(const Box& coarse_box, const double* coarse_g, const d
       const auto rows = neighbours(fine_box.j0 + j, coarse_box.j0, coarse_box.ny);
       const auto at = [&](std::int64_t row, std::int64_t column) {
         const std::int64_t n = row * coarse_box.nx + column;
-        return coarse_g[n] - scale * coarse_gap[n];
+        return coarse_g[n] - coarse_gap.scale * (coarse_gap.values[n] - coarse_gap.origin);
       };
       for (std::int64_t i = 0; i < fine_box.nx; ++i) {
         const auto columns = neighbours(fine_box.i0 + i, coarse_box.i0, coarse_box.nx);

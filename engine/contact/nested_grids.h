@@ -10,6 +10,7 @@
 
 #include "base/buffer.h"
 #include "base/grid.h"
+#include "contact/problem.h"
 #include "parallel/arena.h"
 
 namespace brinell::contact {
@@ -47,8 +48,8 @@ Buffer<double> gather(const Grid& grid, const Box& box, const double* field);
 void prolong_pressure(const Box& coarse_box, const double* coarse, const Box& fine_box, double* fine,
                       const parallel::Arena& arena);
 
-/// Bilinear continuation of the displacement coarse_g − scale·coarse_gap.
-void prolong_displacement(const Box& coarse_box, const double* coarse_g, const double* coarse_gap, double scale,
+/// Bilinear continuation of the displacement coarse_g − coarse_gap.
+void prolong_displacement(const Box& coarse_box, const double* coarse_g, const UndeformedGap& coarse_gap,
                           const Box& fine_box, double* fine, const parallel::Arena& arena);
 
 /// Mean over the nodes of each cell of the next coarser grid.

@@ -134,11 +134,11 @@ double Passes<Real>::clip(double factor, double* p) {
 }
 
 template <class Real>
-simd::RefreshSums Passes<Real>::refresh(double scale, const double* h, const double* p, double* g) {
+simd::RefreshSums Passes<Real>::refresh(const UndeformedGap& h, const double* p, double* g) {
   return over_blocks<Refreshed>(kCombine,
                                 [&](std::int64_t i, std::size_t n, std::size_t) {
                                   Refreshed part;
-                                  kernels_.refresh(n, scale, h + i, p + i, g + i, &part.sums);
+                                  kernels_.refresh(n, h.scale, h.origin, h.values + i, p + i, g + i, &part.sums);
                                   return part;
                                 })
       .sums;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/buffer.h"
+#include "contact/problem.h"
 #include "parallel/arena.h"
 #include "simd/kernel_table.h"
 
@@ -48,7 +49,7 @@ class Passes {
   double clip(double factor, double* p);
 
   /// g: displacement on entry, deformed gap on return.
-  simd::RefreshSums refresh(double scale, const double* h, const double* p, double* g);
+  simd::RefreshSums refresh(const UndeformedGap& h, const double* p, double* g);
 
   void indicator(const double* p, Real* z);
   void conductance(const double* p, const Real* z, float* w);

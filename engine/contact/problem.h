@@ -22,6 +22,14 @@ struct Resources {
   influence::SpectrumCache& spectra;
 };
 
+/// The gap h = scale·(values − origin) of the undeformed surfaces, in unit lengths. Measured from where they first
+/// touch, it keeps its digits where it matters, however far away its values have their zero.
+struct UndeformedGap {
+  const double* values;  // one per node [m]
+  double scale;          // [1/m]
+  double origin;         // [m]
+};
+
 enum class Drive : std::int32_t { force, approach };
 
 struct Settings {

@@ -30,7 +30,6 @@ Solver::Solver(const Resources& resources, const Grid& grid, Boundary boundary, 
       gap_(gap),
       scale_(1 / grid.dx),
       mixed_precision_(mixed_precision),
-      coarser_(coarser_grids(grid_, boundary, {gap, grid.nodes()}, resources.backend.arena)),
       p_(grid.nodes()),
       g_(grid.nodes()) {
   const auto sums = ordered_sum<GapSums>(
@@ -57,14 +56,17 @@ Solver::~Solver() = default;
 /// No pressure: the undeformed gap.
 void Solver::separate() {
   std::fill(p_.begin(), p_.end(), 0.0);
-  for (std::size_t n = 0; n < g_.size(); ++n) g_[n] = scale_ * gap_[n];
+  for (std::size_t n = 0; n < g_.size(); ++n) g_[n] = scale_ * (gap_[n] - first_touch_);
   total_ = 0;
   approach_ = first_touch_;
 }
 
 Solver::State Solver::state() const {
-  State state{Buffer<double>::uninitialised(p_.size()), total_, approach_};
-  std::copy(p_.begin(), p_.end(), state.pressure.begin());
+  State state{{}, total_, approach_};
+  if (total_ > 0) {
+    state.pressure = Buffer<double>::uninitialised(p_.size());
+    std::copy(p_.begin(), p_.end(), state.pressure.begin());
+  }
   return state;
 }
 
@@ -79,7 +81,7 @@ void Solver::restore(const State& state) {
   approach_ = state.approach;
   full_compliance().apply(p_.data(), g_.data());
   Passes<double>(resources_.backend.arena, resources_.backend.kernels, grid_.nodes())
-      .refresh(scale_, gap_, p_.data(), g_.data());
+      .refresh(undeformed(gap_), p_.data(), g_.data());
 }
 
 const Compliance<double>& Solver::full_compliance() {
@@ -97,7 +99,7 @@ Level<Real>& Solver::full_level() {
     }
   }();
   if (level == nullptr) {
-    level = std::make_unique<Level<Real>>(resources_, full_compliance(), grid_, boundary_, gap_, scale_,
+    level = std::make_unique<Level<Real>>(resources_, full_compliance(), grid_, boundary_, undeformed(gap_),
                                           Fields{p_.data(), g_.data()});
   }
   return *level;
@@ -126,6 +128,7 @@ Solution Solver::solve(Drive drive, double target, double tolerance, std::int32_
   }
   Solution solution = mixed_precision_ ? solve_nested<float>(drive, target, tolerance, max_iterations, observer)
                                        : solve_nested<double>(drive, target, tolerance, max_iterations, observer);
+  if (drive == Drive::approach) solution.approach = target;
   total_ = solution.total;
   approach_ = solution.approach;
   return solution;
@@ -135,47 +138,50 @@ template <class Real>
 Solution Solver::solve_nested(Drive drive, double target, double tolerance, std::int32_t max_iterations,
                               Observer observer) {
   const parallel::Arena& arena = resources_.backend.arena;
-  const double unit_target = drive == Drive::approach ? target * scale_ : target;
+  const double unit_target = drive == Drive::approach ? (target - first_touch_) * scale_ : target;
   const auto to_solution = [&](const LevelResult& result) {
-    return Solution{result.converged,   result.approach / scale_, result.total,
-                    result.certificate, result.iterations,        result.convolutions};
+    return Solution{result.converged,  first_touch_ + result.approach / scale_,
+                    result.total,      result.certificate,
+                    result.iterations, result.convolutions};
   };
   const Box whole = Box::whole(grid_);
-  if (coarser_.empty() || start_is_close(drive, target)) {
+  std::vector<CoarserGrid> coarser;
+  if (!start_is_close(drive, target)) coarser = coarser_grids(grid_, boundary_, {gap_, grid_.nodes()}, arena);
+  if (coarser.empty()) {
     return to_solution(full_level<Real>().solve(drive, unit_target, tolerance, max_iterations, observer));
   }
 
   // The coarsest grid starts from the present pressure.
   Buffer<double> p;
-  for (std::size_t level = 0; level < coarser_.size(); ++level) {
-    auto restricted = Buffer<double>::uninitialised(coarser_[level].grid.nodes());
-    restrict_to(level == 0 ? grid_ : coarser_[level - 1].grid, level == 0 ? p_.data() : p.data(),
-                coarser_[level].grid, restricted.data(), arena);
+  for (std::size_t level = 0; level < coarser.size(); ++level) {
+    auto restricted = Buffer<double>::uninitialised(coarser[level].grid.nodes());
+    restrict_to(level == 0 ? grid_ : coarser[level - 1].grid, level == 0 ? p_.data() : p.data(), coarser[level].grid,
+                restricted.data(), arena);
     p = std::move(restricted);
   }
 
   const double unit_area = grid_.cell_area();
-  Box box = Box::whole(coarser_.back().grid);
+  Box box = Box::whole(coarser.back().grid);
   Buffer<double> g(p.size());
-  Buffer<double> gap = gather(coarser_.back().grid, box, coarser_.back().gap.data());
-  for (std::size_t level = coarser_.size(); level-- > 0;) {
-    const Grid& grid = coarser_[level].grid;
+  Buffer<double> gap = gather(coarser.back().grid, box, coarser.back().gap.data());
+  for (std::size_t level = coarser.size(); level-- > 0;) {
+    const Grid& grid = coarser[level].grid;
     const Grid part{box.nx, box.ny, grid.dx, grid.dy};
     const double level_target = drive == Drive::force ? unit_target * unit_area / grid.cell_area() : unit_target;
     const Compliance<double> compliance(resources_, part, boundary_);
-    Level<Real> solver(resources_, compliance, part, boundary_, gap.data(), scale_, {p.data(), g.data()});
-    if (level + 1 < coarser_.size()) solver.correct_start(drive, level_target);
+    Level<Real> solver(resources_, compliance, part, boundary_, undeformed(gap.data()), {p.data(), g.data()});
+    if (level + 1 < coarser.size()) solver.correct_start(drive, level_target);
     solver.solve(drive, level_target, std::max(kCoarseTolerance, tolerance), kCoarseIterations, observer);
 
-    const Grid& finer = level > 0 ? coarser_[level - 1].grid : grid_;
-    const double* finer_gap = level > 0 ? coarser_[level - 1].gap.data() : gap_;
+    const Grid& finer = level > 0 ? coarser[level - 1].grid : grid_;
+    const double* finer_gap = level > 0 ? coarser[level - 1].gap.data() : gap_;
     const Box next = candidate_box(contact_box(box, p.data()), finer, boundary_);
     const bool in_place = level == 0 && next == whole;
     const std::size_t nodes = in_place ? 0 : static_cast<std::size_t>(next.nx * next.ny);
     auto next_p = Buffer<double>::uninitialised(nodes);
     auto next_g = Buffer<double>::uninitialised(nodes);
     prolong_pressure(box, p.data(), next, in_place ? p_.data() : next_p.data(), arena);
-    prolong_displacement(box, g.data(), gap.data(), scale_, next, in_place ? g_.data() : next_g.data(), arena);
+    prolong_displacement(box, g.data(), undeformed(gap.data()), next, in_place ? g_.data() : next_g.data(), arena);
     if (!in_place) gap = gather(finer, next, finer_gap);
     p = std::move(next_p);
     g = std::move(next_g);
@@ -183,6 +189,7 @@ Solution Solver::solve_nested(Drive drive, double target, double tolerance, std:
   }
 
   if (box == whole) {
+    coarser.clear();
     p = {};
     g = {};
     gap = {};
@@ -193,7 +200,7 @@ Solution Solver::solve_nested(Drive drive, double target, double tolerance, std:
   // Only the box is solved, then certified on the whole grid.
   const Grid part{box.nx, box.ny, grid_.dx, grid_.dy};
   const Compliance<double> compliance(resources_, part, boundary_);
-  Level<Real> window(resources_, compliance, part, boundary_, gap.data(), scale_, {p.data(), g.data()});
+  Level<Real> window(resources_, compliance, part, boundary_, undeformed(gap.data()), {p.data(), g.data()});
   window.correct_start(drive, unit_target);
   const LevelResult inside = window.solve(drive, unit_target, tolerance, max_iterations, observer);
   std::fill(p_.begin(), p_.end(), 0.0);
@@ -201,7 +208,7 @@ Solution Solver::solve_nested(Drive drive, double target, double tolerance, std:
     std::copy_n(p.data() + j * box.nx, box.nx, p_.data() + (box.j0 + j) * grid_.nx + box.i0);
   }
   Passes<double> passes(arena, resources_.backend.kernels, grid_.nodes());
-  const Certified certified = certify(arena, full_compliance(), passes, grid_.nodes(), gap_, scale_, p_.data(),
+  const Certified certified = certify(arena, full_compliance(), passes, grid_.nodes(), undeformed(gap_), p_.data(),
                                       g_.data(), drive, unit_target);
   const bool holds = certified.certificate.worst() <= tolerance;
   if (inside.converged && !holds) {  // something outside the box came into contact

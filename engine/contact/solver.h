@@ -42,14 +42,15 @@ class Solver {
   /// Pressure [E*] of every node.
   const Buffer<double>& pressure() const { return p_; }
 
-  /// Gap of the deformed surfaces before the approach is taken off, in units of dx.
+  /// Gap of the deformed surfaces before the approach is taken off, both measured from first_touch, in units of dx:
+  /// first_touch + dx·deformed_gap − approach is what is open between them.
   const Buffer<double>& deformed_gap() const { return g_; }
 
   double first_touch() const { return first_touch_; }  // [m]
 
   /// What the next solution starts from.
   struct State {
-    Buffer<double> pressure;  // [E*]
+    Buffer<double> pressure;  // [E*]; empty if the bodies are apart
     double total = 0;         // Σ p
     double approach = 0;      // [m]
   };
@@ -70,6 +71,7 @@ class Solver {
   Level<Real>& full_level();
   bool start_is_close(Drive drive, double target) const;
   void separate();
+  UndeformedGap undeformed(const double* gap) const { return {gap, scale_, first_touch_}; }
 
   Resources resources_;
   Grid grid_;  // unit lengths: dx = 1
@@ -79,7 +81,6 @@ class Solver {
   bool mixed_precision_;
   double first_touch_ = 0;
   double mean_gap_ = 0;
-  std::vector<CoarserGrid> coarser_;
   Buffer<double> p_, g_;
   std::unique_ptr<Compliance<double>> compliance_;  // of the full grid; this and the next made when first needed
   std::unique_ptr<Level<double>> in_double_;

@@ -87,8 +87,9 @@ class Convolution {
   std::size_t workspace_bytes() const;  // of one Workspace
 
   /// Spectrum of the kernel whose values at offsets (i, j), 0 <= i < nx, 0 <= j < ny, are kernel[j·nx + i];
-  /// negative offsets follow from the parities. Free boundary only.
-  Spectrum<Real> spectrum(const double* kernel, Parity parity_x, Parity parity_y) const;
+  /// negative offsets follow from the parities. Free boundary only. The workspace, if there is one, spares memory.
+  Spectrum<Real> spectrum(const double* kernel, Parity parity_x, Parity parity_y,
+                          Workspace<Real>* workspace = nullptr) const;
 
   /// Spectrum given by its own values: symbol(kx, ky) for wave numbers 0 <= kx <= nx/2, 0 <= ky <= ny/2 (cycles per
   /// period); result = Σ_q s(q) source^(q) e^{iqx} with s(q) = symbol(|qx|, |qy|), along an odd axis times −i sign(q)
@@ -97,6 +98,9 @@ class Convolution {
                                     Parity parity_x = Parity::even, Parity parity_y = Parity::even) const;
 
   std::unique_ptr<Workspace<Real>> workspace() const;
+
+  /// Makes a workspace of another convolution serve this one as well: convolutions that take turns share one.
+  void enlarge(Workspace<Real>& workspace) const;
 
   /// source and result: nx·ny values, row-major; they may be the same array. Threads of the arena share the work;
   /// the bits do not depend on their number.

@@ -60,7 +60,6 @@ void Run::prepare() {
   stage_seconds_[static_cast<int>(Stage::contact)] += seconds_since(start);
   if (increments_.empty()) {
     step_origin_ = {0, std::min(0.0, solver_->first_touch())};
-    last_ = solver_->state();
   }
 }
 
@@ -78,6 +77,7 @@ const Increment& Run::advance(const std::function<bool(const Progress&)>& procee
   const Target target = target_of(scene_.steps()[static_cast<std::size_t>(position.step)], position.increment,
                                   step_origin_, scene_.grid());
 
+  const contact::Solver::State before = solver_->state();
   const std::size_t traced = trace_.size();
   const auto observe = [&](const contact::Report& report) {
     const double seconds = seconds_since(start);
@@ -93,11 +93,10 @@ const Increment& Run::advance(const std::function<bool(const Progress&)>& procee
                        scene_.solver().tolerance, scene_.solver().max_iterations, observe);
   } catch (...) {
     trace_.resize(traced);
-    solver_->restore(last_);
+    solver_->restore(before);
     throw;
   }
   increments_.push_back(summary(solution, position));
-  last_ = solver_->state();
 
   const double seconds = seconds_since(start);
   increments_.back().wall_seconds = seconds;
@@ -159,7 +158,8 @@ Increment Run::summary(const contact::Solution& solution, const Position& positi
   increment.max_pressure = sums.largest * contact_modulus_;
   increment.max_pressure_at[0] = sums.largest_at >= 0 ? grid.x(sums.largest_at % grid.nx) : none;
   increment.max_pressure_at[1] = sums.largest_at >= 0 ? grid.y(sums.largest_at / grid.nx) : none;
-  increment.mean_gap = sums.gap / static_cast<double>(grid.nodes()) * grid.dx - solution.approach;
+  increment.mean_gap =
+      sums.gap / static_cast<double>(grid.nodes()) * grid.dx - (solution.approach - solver_->first_touch());
   increment.certificate = solution.certificate;
   return increment;
 }
@@ -175,12 +175,13 @@ void Run::copy_field(Field field, std::span<double> values) {
   const Buffer<double>& p = solver_->pressure();
   const Buffer<double>& g = solver_->deformed_gap();
   const double unit = scene_.grid().dx;
-  const double approach = increments_.back().approach;
+  const double first_touch = solver_->first_touch();
+  const double approach = increments_.back().approach - first_touch;
   for (std::size_t n = 0; n < gap_.size(); ++n) {
     switch (field) {
       case Field::pressure: values[n] = p[n] * contact_modulus_; break;
       case Field::gap: values[n] = g[n] * unit - approach; break;
-      case Field::displacement: values[n] = g[n] * unit - gap_[n]; break;
+      case Field::displacement: values[n] = g[n] * unit - (gap_[n] - first_touch); break;
       case Field::undeformed_gap: break;
     }
   }

@@ -100,8 +100,7 @@ class Run {
   std::unique_ptr<contact::Solver> solver_;
 
   // What the next increment starts from:
-  Origin step_origin_;           // of the step under way
-  contact::Solver::State last_;  // after the last solved increment
+  Origin step_origin_;  // of the step under way
   std::vector<Increment> increments_;
   std::vector<TracePoint> trace_;
   double solving_seconds_ = 0;

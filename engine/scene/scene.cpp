@@ -90,8 +90,8 @@ void Scene::set_grid(const Grid& grid, Boundary boundary) {
   for (const SurfaceEntry& entry : surfaces_) holds_heights = holds_heights || std::holds_alternative<Heights>(entry);
   require(!holds_heights || (grid.nx == grid_.nx && grid.ny == grid_.ny), Status::wrong_state,
           "nodes = " + std::to_string(grid.nx) + " x " + std::to_string(grid.ny) +
-              ": the grid cannot change, the scene already holds heights on " + std::to_string(grid_.nx) + " x " + std::to_string(grid_.ny) +
-              " nodes");
+              ": the grid cannot change, the scene already holds heights on " + std::to_string(grid_.nx) + " x " +
+              std::to_string(grid_.ny) + " nodes");
   grid_ = grid;
   boundary_ = boundary;
 }

@@ -31,7 +31,7 @@ struct RefreshSums {
   double gap = 0;           // Σ g over active nodes
   double min_gap = 0;       // over the block
   double displacement = 0;  // largest |u|
-  double energy = 0;        // Σ p (u/2 + h)
+  double energy = 0;        // Σ p (u/2 + scale·(h − origin))
 };
 
 template <class Real>
@@ -56,8 +56,9 @@ struct ContactKernels {
   /// p = max(p, 0)·factor; returns Σ p.
   double (*clip)(std::size_t n, double factor, double* p);
 
-  /// On entry g holds the displacement u of p; g = u + scale·h.
-  void (*refresh)(std::size_t n, double scale, const double* h, const double* p, double* g, RefreshSums* sums);
+  /// On entry g holds the displacement u of p; g = u + scale·(h − origin).
+  void (*refresh)(std::size_t n, double scale, double origin, const double* h, const double* p, double* g,
+                  RefreshSums* sums);
 
   /// z = 1 where active, else 0.
   void (*indicator)(std::size_t n, const double* p, Real* z);

@@ -59,9 +59,10 @@ TEST(Solver, agrees_with_the_direct_solution_for_a_sphere) {
   for (const Case& c : kCases) {
     SCOPED_TRACE(text_of(c));
     const double radius = 20 * c.grid.dx * static_cast<double>(c.grid.nx);
-    const std::vector<double> gap = support::gap_of(surface::Sphere{radius}, c.grid, {0.3 * c.grid.dx, -1.2 * c.grid.dy});
-    const double contact_radius = 0.3 * std::min(static_cast<double>(c.grid.nx) * c.grid.dx,
-                                                 static_cast<double>(c.grid.ny) * c.grid.dy);
+    const std::vector<double> gap =
+        support::gap_of(surface::Sphere{radius}, c.grid, {0.3 * c.grid.dx, -1.2 * c.grid.dy});
+    const double contact_radius =
+        0.3 * std::min(static_cast<double>(c.grid.nx) * c.grid.dx, static_cast<double>(c.grid.ny) * c.grid.dy);
     const double force = 4 * std::pow(contact_radius, 3) / (3 * radius);
     expect_agreement(c.grid, c.boundary, gap, Drive::force, force / c.grid.cell_area());
     expect_agreement(c.grid, c.boundary, gap, Drive::approach, 0.5 * contact_radius * contact_radius / radius);

@@ -161,6 +161,11 @@ TEST(Contact, of_white_noise_converges) {
         const std::vector<double> gap = support::random_gap(grid, height, 5);
         const double force = 0.05 * height * static_cast<double>(grid.nodes());
         expect_certified(press(bench, grid, boundary, gap, {Drive::force, force, 1e-9}), 1e-9);
+        // Coarser grids, whose gaps are means, do not see the peaks that touch first.
+        for (const double part : {1e-3, 0.3}) {
+          const double approach = least(gap) + part * (mean(gap) - least(gap));
+          expect_certified(press(bench, grid, boundary, gap, {Drive::approach, approach, 1e-9}), 1e-9);
+        }
       }
     }
   }
@@ -229,13 +234,12 @@ TEST(Contact, below_first_touch_is_none) {
   Solver solver(bench.resources, grid, Boundary::free, gap.data(), false);
   EXPECT_EQ(solver.first_touch(), least(gap));
   // Also after there was contact, and again contact after that.
-  for (const Request& request : {Request{Drive::approach, -1}, Request{Drive::approach, 1},
-                                 Request{Drive::approach, least(gap)}, Request{Drive::force, 3},
-                                 Request{Drive::force, 0}, Request{Drive::approach, 0.6}}) {
+  for (const Request& request :
+       {Request{Drive::approach, -1}, Request{Drive::approach, 1}, Request{Drive::approach, least(gap)},
+        Request{Drive::force, 3}, Request{Drive::force, 0}, Request{Drive::approach, 0.6}}) {
     const Solution solution = solve(solver, request);
     EXPECT_TRUE(solution.converged);
-    const bool touches =
-        request.drive == Drive::force ? request.target > 0 : request.target > least(gap);
+    const bool touches = request.drive == Drive::force ? request.target > 0 : request.target > least(gap);
     EXPECT_EQ(solution.total > 0, touches);
     if (request.drive == Drive::approach) {
       EXPECT_EQ(solution.approach, request.target);
@@ -243,7 +247,7 @@ TEST(Contact, below_first_touch_is_none) {
     if (touches) continue;
     for (std::size_t n = 0; n < gap.size(); ++n) {
       ASSERT_EQ(solver.pressure()[n], 0);
-      ASSERT_EQ(solver.deformed_gap()[n], gap[n]);
+      ASSERT_EQ(solver.deformed_gap()[n], gap[n] - least(gap));
     }
     EXPECT_EQ(solution.certificate.worst(), 0);
   }
@@ -309,7 +313,8 @@ TEST(WarmStart, from_a_wrong_pressure_is_not_declared_solved) {
   for (const Drive drive : {Drive::force, Drive::approach}) {
     const Request request{drive, drive == Drive::force ? 50.0 : 0.5 * least(gap), 1e-9};
     const Pressed expected = press(bench, grid, Boundary::free, gap, request);
-    std::vector<double> uniform(grid.nodes(), expected.solution.total / nodes), single(grid.nodes(), 0.0), none(single);
+    std::vector<double> uniform(grid.nodes(), expected.solution.total / nodes), single(grid.nodes(), 0.0),
+        none(single);
     single[17] = expected.solution.total;
     std::vector<double> mirrored(expected.pressure.rbegin(), expected.pressure.rend()), uneven = expected.pressure;
     for (std::size_t n = 0; n < uneven.size(); n += 2) uneven[n] *= 0.5;

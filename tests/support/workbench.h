@@ -87,7 +87,7 @@ struct Request {
 inline Pressed state_of(const contact::Solver& solver, const contact::Solution& solution, double dx) {
   Pressed pressed{solution, {}, {}};
   pressed.pressure.assign(solver.pressure().begin(), solver.pressure().end());
-  for (const double g : solver.deformed_gap()) pressed.deformed_gap.push_back(g * dx);
+  for (const double g : solver.deformed_gap()) pressed.deformed_gap.push_back(solver.first_touch() + g * dx);
   return pressed;
 }
 

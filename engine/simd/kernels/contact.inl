@@ -98,13 +98,13 @@ struct ContactPasses {
     return sum;
   }
 
-  static void refresh(std::size_t n, double scale, const double* __restrict h, const double* __restrict p,
-                      double* __restrict g, RefreshSums* sums) {
+  static void refresh(std::size_t n, double scale, double origin, const double* __restrict h,
+                      const double* __restrict p, double* __restrict g, RefreshSums* sums) {
     double active = 0, gap = 0, min_gap = HUGE_VAL, displacement = 0, energy = 0;
 #pragma omp simd reduction(+ : active, gap, energy) reduction(min : min_gap) reduction(max : displacement)
     for (std::size_t i = 0; i < n; ++i) {
       const double u = g[i];
-      const double undeformed = scale * h[i];
+      const double undeformed = scale * (h[i] - origin);
       const double deformed = undeformed + u;
       const double magnitude = std::fabs(u);
       g[i] = deformed;
