@@ -82,7 +82,8 @@ class Program {
     app_.require_subcommand(1);
     app_.failure_message(usage_message);
     app_.footer(
-        "Exit status: 0 solved and certified, 1 not converged, 2 bad usage or scene, 3 file or resource trouble,\n"
+        "Exit status: 0 solved and certified, 1 not converged (bench: a figure beyond what is allowed), 2 bad usage "
+        "or scene, 3 file or resource trouble,\n"
         "130 interrupted (state saved).");
 
     auto& run = add("run", "Solve a scene and write its results", [this] { return run_command(options_); });
@@ -106,12 +107,30 @@ class Program {
                        [this] { return report_command(options_.out); });
     report.add_option("DIR", options_.out, "Folder of the run")->required()->check(not_empty());
 
-    auto& bench = add("bench", "Time scenes",
-                      [this] { return bench_command(paths_, rounds_, options_.threads.value_or(0), options_.json); });
-    bench.add_option("PROFILE", paths_, "Scene files or folders (default: those in profiles/)");
-    bench.add_option("--rounds", rounds_, "Runs of each scene")->check(CLI::Range(1, 1000))->capture_default_str();
-    add_threads(bench);
-    bench.add_flag("--json", options_.json, "Print JSON");
+    auto& bench = add("bench", "Measure the cost of kernels and scenes against their baselines",
+                      [this] { return bench_command(bench_); });
+    bench.add_option("PROFILE", bench_.scenes,
+                     "Scene files or folders, or the word kernels (default: kernels, and the scenes in profiles/)");
+    bench.add_option("--rounds", bench_.rounds, "Runs of each scene; an odd number is rounded up, 0 times nothing")
+        ->check(CLI::Range(0, 1000))
+        ->capture_default_str();
+    bench.add_option("--threads", bench_.threads, "At most so many threads; 0: all that the process may use")
+        ->check(CLI::Range(0, 1024))
+        ->capture_default_str();
+    bench.add_option("--allowed", bench_.allowed, "Ratio to the baseline's time beyond which a figure fails")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    bench
+        .add_option("--allowed-instructions", bench_.allowed_instructions,
+                    "Ratio to the baseline's instructions beyond which a figure fails")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    bench.add_flag("!--no-instructions", bench_.instructions, "Count no instructions (which takes valgrind)");
+    bench.add_option("--baselines", bench_.baselines,
+                     "Folder that holds PROFILE/baseline.json (default: beside each scene, kernels in profiles/)");
+    bench.add_flag("--update", bench_.update, "Record what is measured as the new baselines");
+    bench.add_flag("--json", bench_.json, "Print JSON");
+    bench.add_flag("--once", bench_.once)->group("");
 
     auto& info = add("info", "Print version, instruction set and threads, or the statistics of height maps",
                      [this] { return info_command(paths_, options_.json); });
@@ -156,7 +175,7 @@ class Program {
   CLI::App app_;
   RunOptions options_;
   std::vector<std::filesystem::path> paths_;
-  int rounds_ = 6;
+  BenchOptions bench_;
   std::function<int()> command_;
 };
 

@@ -493,6 +493,27 @@ BRN_API brn_status brn_run_save(brn_run *run, void *buffer, size_t capacity, siz
 BRN_API brn_status brn_run_load(brn_engine *engine, const brn_scene *scene, const void *data, size_t size,
                                 brn_run **out);
 
+/* ---------------------------------------------------------------- benchmark
+ *
+ * Seconds mean little on a shared machine. Each kernel of the engine therefore has a calibration: work of the same
+ * kind that is not the engine's own. Run both in turn, round after round, and watch the ratio of their times: its
+ * median stays where it is until the kernel itself changes. */
+
+/* Kernels and calibrations together; their indices are 0 to this less one. */
+BRN_API int32_t brn_benchmark_count(void);
+
+/* For example "convolution_double"; NULL for an index that does not exist. The names, not the indices, stay the same
+ * in later releases. */
+BRN_API const char *brn_benchmark_name(int32_t index);
+
+/* Index of the calibration that belongs to a kernel; that of a calibration is its own; -1 for an index that does not
+ * exist. Calibration 0 suits whole runs. */
+BRN_API int32_t brn_benchmark_calibration(int32_t index);
+
+/* Carries one out on the engine, once to warm up and then for some ten milliseconds. *seconds receives what one turn
+ * took: processor time of the calling thread if the engine has one thread, else wall time. */
+BRN_API brn_status brn_benchmark_run(brn_engine *engine, int32_t index, double *seconds);
+
 #ifdef __cplusplus
 }
 #endif

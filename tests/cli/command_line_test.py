@@ -106,7 +106,7 @@ class CommandLine(unittest.TestCase):
     def test_bad_usage_is_status_2(self):
         for arguments in ([], ["run"], ["walk"], ["run", "a", "b"], ["run", "a", "--outt", "b"], ["plan"],
                           ["run", "a", "--threads", "-1"], ["run", "a", "--threads", "many"], ["resume"],
-                          ["bench", "--rounds", "0"]):
+                          ["bench", "--rounds", "-1"]):
             result = self.brinell(*arguments)
             self.expect(result, 2)
             self.assertTrue(result.stderr, arguments)
@@ -205,11 +205,38 @@ class CommandLine(unittest.TestCase):
 
     def test_bench_times_scenes_without_writing(self):
         before = sorted(self.folder.iterdir())
-        scenes = json.loads(self.brinell("bench", self.scene, "--rounds", 2, "--json").stdout)["scenes"]
-        self.assertEqual([(s["increments"], s["rounds"]) for s in scenes], [(5, 2)])
-        self.assertGreater(scenes[0]["median_seconds"], 0)
+        result = json.loads(self.brinell("bench", self.scene, "--rounds", 2, "--no-instructions", "--json").stdout)
+        self.assertEqual([s["increments"] for s in result["scenes"]], [5])
+        figure = result["scenes"][0]["figures"][0]
+        self.assertGreater(figure["median_seconds"], 0)
+        self.assertEqual(figure["not_compared"], "no baseline")
         self.assertEqual(sorted(self.folder.iterdir()), before)
         self.expect(self.brinell("bench"), 3, "profiles/")
+
+    def test_bench_fails_only_beyond_what_is_allowed(self):
+        bench = ["bench", self.scene, "--no-instructions", "--rounds", 2, "--baselines", "kept"]
+        self.expect(self.brinell(*bench, "--update"), 0)
+        kept = self.folder / "kept" / self.folder.name / "baseline.json"
+        self.expect(self.brinell(*bench, "--allowed", 1000), 0)
+        baseline = json.loads(kept.read_text())
+        self.assertEqual(baseline["figures"]["time"]["calibration"], "calibration_transforms")
+        baseline["figures"]["time"]["ratio"] /= 1e6
+        kept.write_text(json.dumps(baseline))
+        self.expect(self.brinell(*bench, "--allowed", 1000), 1, "time costs", baseline["recorded"]["date"])
+        baseline["recorded"]["machine"] = "an abacus"
+        kept.write_text(json.dumps(baseline))
+        self.assertIn("recorded on an abacus", self.brinell(*bench).stdout)
+        kept.write_text("{}")
+        self.expect(self.brinell(*bench), 3, "is no baseline")
+
+    @unittest.skipUnless(shutil.which("valgrind"), "valgrind is not installed")
+    @unittest.skipIf(os.environ.get("BRINELL_SANITIZE"), "valgrind runs no sanitized programs")
+    def test_bench_counts_instructions_that_repeat(self):
+        bench = ["bench", self.scene, "--rounds", 0, "--baselines", "kept"]
+        self.expect(self.brinell(*bench, "--update"), 0)
+        again = json.loads(self.brinell(*bench, "--json").stdout)["scenes"][0]["figures"][0]
+        self.assertEqual(again["name"], "instructions")
+        self.assertAlmostEqual(again["against_baseline"], 1, delta=0.001)
 
     @unittest.skipUnless(shutil.which("gnuplot"), "gnuplot is not installed")
     def test_report_draws_pictures(self):
