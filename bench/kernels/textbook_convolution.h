@@ -9,6 +9,7 @@
 #include <memory>
 #include <type_traits>
 
+#include "base/function_ref.h"
 #include "base/grid.h"
 
 namespace brinell::bench {
@@ -20,7 +21,7 @@ class TextbookConvolution {
   using Complex = std::conditional_t<kDouble, fftw_complex, fftwf_complex>;
 
  public:
-  /// The spectrum is that of a smooth even kernel of no meaning.
+  /// Until another is set, the spectrum is that of a smooth even kernel of no meaning.
   TextbookConvolution(std::int64_t nx, std::int64_t ny, Boundary boundary)
       : nx_(nx),
         ny_(ny),
@@ -55,6 +56,33 @@ class TextbookConvolution {
   }
   TextbookConvolution(const TextbookConvolution&) = delete;
   TextbookConvolution& operator=(const TextbookConvolution&) = delete;
+
+  /// Free boundary: the kernel's values at offsets 0 <= i < nx, 0 <= j < ny, even in both.
+  void set_kernel(const double* kernel) {
+    std::fill(field_.get(), field_.get() + 2 * columns_ * padded_ny_, Real{0});
+    for (std::int64_t j = 0; j < padded_ny_; ++j) {
+      const std::int64_t offset_y = std::min(j, padded_ny_ - j);
+      if (offset_y == ny_) continue;  // no two nodes are that far apart
+      for (std::int64_t i = 0; i < padded_nx_; ++i) {
+        const std::int64_t offset_x = std::min(i, padded_nx_ - i);
+        if (offset_x != nx_)
+          field_.get()[2 * columns_ * j + i] = static_cast<Real>(kernel[offset_y * nx_ + offset_x]);
+      }
+    }
+    execute(forward_);
+    const Real scale = Real{1} / static_cast<Real>(padded_nx_ * padded_ny_);
+    for (std::int64_t k = 0; k < columns_ * padded_ny_; ++k) spectrum_.get()[k] = scale * field_.get()[2 * k];
+  }
+
+  /// Periodic boundary: the factor of each wave (cycles per period), even in both.
+  void set_symbol(FunctionRef<double(std::int64_t kx, std::int64_t ky)> symbol) {
+    const double scale = 1.0 / static_cast<double>(padded_nx_ * padded_ny_);
+    for (std::int64_t j = 0; j < padded_ny_; ++j) {
+      for (std::int64_t i = 0; i < columns_; ++i) {
+        spectrum_.get()[j * columns_ + i] = static_cast<Real>(scale * symbol(i, std::min(j, padded_ny_ - j)));
+      }
+    }
+  }
 
   void apply(const Real* source, Real* result) {
     Real* field = field_.get();

@@ -41,7 +41,8 @@ void advance(scene::Run& run, brn_progress_callback callback, void* user) {
     fail(Status::not_converged, "step " + std::to_string(increment.position.step) + ", increment " +
                                     std::to_string(increment.position.increment) + " did not converge: after " +
                                     std::to_string(increment.iterations) + " iterations the certificate is " +
-                                    text(increment.certificate.worst()));
+                                    text(increment.certificate.worst()) + "; the tolerance is " +
+                                    text(run.tolerance()));
   }
 }
 

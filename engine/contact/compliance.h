@@ -18,6 +18,9 @@ class Compliance {
     convolution_.apply(*spectrum_, pressure, result, *workspace_);
   }
 
+  /// The scratch of its convolution, for others that take turns with it.
+  fft::Workspace<Real>& workspace() const { return *workspace_; }
+
   /// Bytes of one on such a grid: its spectrum and its workspace.
   static std::size_t bytes(const fft::Backend& backend, const Grid& grid, Boundary boundary);
 

@@ -30,6 +30,23 @@ constexpr int kPatience = 150;
 template <class Real>
 constexpr double kBelieved = 64 * std::numeric_limits<Real>::epsilon();
 
+template <class Real>
+std::unique_ptr<Compliance<float>> make_fast(const Resources& resources, const Grid& grid, Boundary boundary) {
+  if constexpr (std::is_same_v<Real, double>) {
+    return nullptr;
+  } else {
+    return std::make_unique<Compliance<float>>(resources, grid, boundary);
+  }
+}
+
+/// The scratch that the iteration's own convolution shares with the preconditioner.
+fft::Workspace<double>& workspace_of(const Compliance<double>& exact, const Compliance<float>*, double) {
+  return exact.workspace();
+}
+fft::Workspace<float>& workspace_of(const Compliance<double>&, const Compliance<float>* fast, float) {
+  return fast->workspace();
+}
+
 }  // namespace
 
 template <class Real>
@@ -41,13 +58,12 @@ Level<Real>::Level(const Resources& resources, const Compliance<double>& exact, 
       fields_(fields),
       self_compliance_(influence::Displacement(grid.dx, grid.dy)(0, 0)),
       exact_(exact),
-      preconditioner_(resources, grid, boundary),
+      fast_(make_fast<Real>(resources, grid, boundary)),
+      preconditioner_(resources, grid, boundary, workspace_of(exact, fast_.get(), Real{})),
       passes_(arena_, resources.backend.kernels, grid.nodes()),
       v_(grid.nodes()),
       q_(grid.nodes()),
-      z_(Buffer<Real>::uninitialised(grid.nodes())) {
-  if constexpr (std::is_same_v<Real, float>) fast_.emplace(resources, grid, boundary);
-}
+      z_(Buffer<Real>::uninitialised(grid.nodes())) {}
 
 /// Clipped and rescaled pressure, its displacement by a fresh convolution, and all that follows from them.
 template <class Real>

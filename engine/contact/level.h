@@ -17,7 +17,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
+#include <memory>
 
 #include "base/buffer.h"
 #include "contact/certificate.h"
@@ -73,7 +73,7 @@ class Level {
   double self_compliance_;
 
   const Compliance<double>& exact_;
-  std::optional<Compliance<float>> fast_;  // Real = float
+  std::unique_ptr<Compliance<float>> fast_;  // Real = float
   Preconditioner<Real> preconditioner_;
   Passes<Real> passes_;
   Buffer<Real> v_, q_, z_;

@@ -32,13 +32,14 @@ struct Preconditioner<Real>::CellSystem {
 };
 
 template <class Real>
-Preconditioner<Real>::Preconditioner(const Resources& resources, const Grid& grid, Boundary boundary)
+Preconditioner<Real>::Preconditioner(const Resources& resources, const Grid& grid, Boundary boundary,
+                                     fft::Workspace<Real>& workspace)
     : arena_(resources.backend.arena),
       kernels_(resources.backend.kernels.of<Real>().contact),
       grid_(grid),
       local_(resources.backend, grid.nx, grid.ny, Boundary::periodic),
       spectrum_(influence::conductance_spectrum(resources.spectra, local_, grid)),
-      workspace_(local_.workspace()),
+      workspace_(workspace),
       cell_nx_(cell_size(grid.nx)),
       cell_ny_(cell_size(grid.ny)),
       cells_x_((grid.nx + cell_nx_ - 1) / cell_nx_),
@@ -46,6 +47,7 @@ Preconditioner<Real>::Preconditioner(const Resources& resources, const Grid& gri
       cells_(cells_x_ * cells_y_),
       conductance_(grid.nodes()),
       system_(std::make_unique<CellSystem>()) {
+  local_.enlarge(workspace_);
   cell_compliance(resources, boundary);
 }
 
@@ -140,8 +142,7 @@ template <class Real>
 std::size_t Preconditioner<Real>::bytes(const fft::Backend& backend, const Grid& grid) {
   const fft::Convolution<Real> local(backend, grid.nx, grid.ny, Boundary::periodic);
   const std::size_t cells = static_cast<std::size_t>(kMostCells * kMostCells);
-  return local.spectrum_bytes() + local.workspace_bytes() + Buffer<float>::padded_bytes(grid.nodes()) +
-         3 * cells * cells * sizeof(double);
+  return local.spectrum_bytes() + Buffer<float>::padded_bytes(grid.nodes()) + 3 * cells * cells * sizeof(double);
 }
 
 template class Preconditioner<double>;

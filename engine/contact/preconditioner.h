@@ -28,7 +28,8 @@ namespace brinell::contact {
 template <class Real>
 class Preconditioner {
  public:
-  Preconditioner(const Resources& resources, const Grid& grid, Boundary boundary);
+  /// workspace: of a convolution that takes turns with this one; enlarged if need be.
+  Preconditioner(const Resources& resources, const Grid& grid, Boundary boundary, fft::Workspace<Real>& workspace);
   ~Preconditioner();
 
   /// To the nodes in contact, p > 0; scratch: one field.
@@ -38,7 +39,7 @@ class Preconditioner {
   void apply(Real* z);
 
   /// The local part alone.
-  void apply_local(Real* z) const { local_.apply(*spectrum_, z, z, *workspace_); }
+  void apply_local(Real* z) const { local_.apply(*spectrum_, z, z, workspace_); }
 
   /// Whether the large scales are treated; if not, they are left to the iteration.
   void treat_large_scales(bool treat) { large_scales_ = treat; }
@@ -56,7 +57,7 @@ class Preconditioner {
   Grid grid_;
   fft::Convolution<Real> local_;
   std::shared_ptr<const fft::Spectrum<Real>> spectrum_;
-  std::unique_ptr<fft::Workspace<Real>> workspace_;
+  fft::Workspace<Real>& workspace_;
 
   std::int64_t cell_nx_, cell_ny_;  // nodes of a cell
   std::int64_t cells_x_, cells_y_;

@@ -30,7 +30,6 @@ Solver::Solver(const Resources& resources, const Grid& grid, Boundary boundary, 
       gap_(gap),
       scale_(1 / grid.dx),
       mixed_precision_(mixed_precision),
-      coarser_(coarser_grids(grid_, boundary, {gap, grid.nodes()}, resources.backend.arena)),
       p_(grid.nodes()),
       g_(grid.nodes()) {
   const auto sums = ordered_sum<GapSums>(
@@ -63,8 +62,11 @@ void Solver::separate() {
 }
 
 Solver::State Solver::state() const {
-  State state{Buffer<double>::uninitialised(p_.size()), total_, approach_};
-  std::copy(p_.begin(), p_.end(), state.pressure.begin());
+  State state{{}, total_, approach_};
+  if (total_ > 0) {
+    state.pressure = Buffer<double>::uninitialised(p_.size());
+    std::copy(p_.begin(), p_.end(), state.pressure.begin());
+  }
   return state;
 }
 
@@ -143,34 +145,36 @@ Solution Solver::solve_nested(Drive drive, double target, double tolerance, std:
                     result.iterations, result.convolutions};
   };
   const Box whole = Box::whole(grid_);
-  if (coarser_.empty() || start_is_close(drive, target)) {
+  std::vector<CoarserGrid> coarser;
+  if (!start_is_close(drive, target)) coarser = coarser_grids(grid_, boundary_, {gap_, grid_.nodes()}, arena);
+  if (coarser.empty()) {
     return to_solution(full_level<Real>().solve(drive, unit_target, tolerance, max_iterations, observer));
   }
 
   // The coarsest grid starts from the present pressure.
   Buffer<double> p;
-  for (std::size_t level = 0; level < coarser_.size(); ++level) {
-    auto restricted = Buffer<double>::uninitialised(coarser_[level].grid.nodes());
-    restrict_to(level == 0 ? grid_ : coarser_[level - 1].grid, level == 0 ? p_.data() : p.data(),
-                coarser_[level].grid, restricted.data(), arena);
+  for (std::size_t level = 0; level < coarser.size(); ++level) {
+    auto restricted = Buffer<double>::uninitialised(coarser[level].grid.nodes());
+    restrict_to(level == 0 ? grid_ : coarser[level - 1].grid, level == 0 ? p_.data() : p.data(), coarser[level].grid,
+                restricted.data(), arena);
     p = std::move(restricted);
   }
 
   const double unit_area = grid_.cell_area();
-  Box box = Box::whole(coarser_.back().grid);
+  Box box = Box::whole(coarser.back().grid);
   Buffer<double> g(p.size());
-  Buffer<double> gap = gather(coarser_.back().grid, box, coarser_.back().gap.data());
-  for (std::size_t level = coarser_.size(); level-- > 0;) {
-    const Grid& grid = coarser_[level].grid;
+  Buffer<double> gap = gather(coarser.back().grid, box, coarser.back().gap.data());
+  for (std::size_t level = coarser.size(); level-- > 0;) {
+    const Grid& grid = coarser[level].grid;
     const Grid part{box.nx, box.ny, grid.dx, grid.dy};
     const double level_target = drive == Drive::force ? unit_target * unit_area / grid.cell_area() : unit_target;
     const Compliance<double> compliance(resources_, part, boundary_);
     Level<Real> solver(resources_, compliance, part, boundary_, undeformed(gap.data()), {p.data(), g.data()});
-    if (level + 1 < coarser_.size()) solver.correct_start(drive, level_target);
+    if (level + 1 < coarser.size()) solver.correct_start(drive, level_target);
     solver.solve(drive, level_target, std::max(kCoarseTolerance, tolerance), kCoarseIterations, observer);
 
-    const Grid& finer = level > 0 ? coarser_[level - 1].grid : grid_;
-    const double* finer_gap = level > 0 ? coarser_[level - 1].gap.data() : gap_;
+    const Grid& finer = level > 0 ? coarser[level - 1].grid : grid_;
+    const double* finer_gap = level > 0 ? coarser[level - 1].gap.data() : gap_;
     const Box next = candidate_box(contact_box(box, p.data()), finer, boundary_);
     const bool in_place = level == 0 && next == whole;
     const std::size_t nodes = in_place ? 0 : static_cast<std::size_t>(next.nx * next.ny);
@@ -185,6 +189,7 @@ Solution Solver::solve_nested(Drive drive, double target, double tolerance, std:
   }
 
   if (box == whole) {
+    coarser.clear();
     p = {};
     g = {};
     gap = {};

@@ -50,7 +50,7 @@ class Solver {
 
   /// What the next solution starts from.
   struct State {
-    Buffer<double> pressure;  // [E*]
+    Buffer<double> pressure;  // [E*]; empty if the bodies are apart
     double total = 0;         // Σ p
     double approach = 0;      // [m]
   };
@@ -81,7 +81,6 @@ class Solver {
   bool mixed_precision_;
   double first_touch_ = 0;
   double mean_gap_ = 0;
-  std::vector<CoarserGrid> coarser_;
   Buffer<double> p_, g_;
   std::unique_ptr<Compliance<double>> compliance_;  // of the full grid; this and the next made when first needed
   std::unique_ptr<Level<double>> in_double_;

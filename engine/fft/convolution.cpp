@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include "base/error.h"
@@ -25,6 +26,13 @@ constexpr std::int64_t kLargestSide = std::int64_t{1} << 24;  // lengths and pro
 /// Rows of one task: about 32k nodes, so that small grids are one task and large ones many.
 std::int64_t rows_of_a_task(std::int64_t nx) {
   return std::max<std::int64_t>(1, 32768 / nx);
+}
+
+/// Frequency m of n stands for m − n in the second half, and for both signs in the middle.
+double sign_of_frequency(std::int64_t m, std::int64_t n, Parity parity) {
+  if (parity == Parity::even) return 1;
+  if (m == 0 || 2 * m == n) return 0;
+  return 2 * m < n ? 1 : -1;
 }
 
 /// Rows are spread over the whole field: with small pages every store would be another page's. A mere wish.
@@ -55,13 +63,28 @@ struct Convolution<Real>::Implementation {
     return spectrum;
   }
 
+  /// A kernel's quarter transformed as sources are.
+  Spectrum<Real> transformed_kernel(const Real* kernel, Parity parity_x, Parity parity_y,
+                                    Workspace<Real>& workspace) const {
+    auto quarter = Buffer<Real>::uninitialised(static_cast<std::size_t>(nx * ny));
+    std::copy_n(kernel, quarter.size(), quarter.data());
+    for (std::int64_t i = 0; parity_y == Parity::even && i < nx; ++i) quarter[static_cast<std::size_t>(i)] /= 2;
+    for (std::int64_t j = 0; parity_x == Parity::even && j < ny; ++j) quarter[static_cast<std::size_t>(j * nx)] /= 2;
+    rows_forward(quarter.data(), workspace);
+    Spectrum<Real> spectrum{Buffer<Real>::uninitialised(carrier->spectrum_size()), parity_x, parity_y};
+    for_blocks(workspace, [&](std::int64_t block, Real* scratch) {
+      carrier->spectrum_block(block, parity_x, parity_y, workspace.field.data(), spectrum.values.data(), scratch);
+    });
+    return spectrum;
+  }
+
   void check(const Spectrum<Real>& spectrum) const {
     if (spectrum.values.size() != carrier->spectrum_size()) {
       fail(Status::invalid_argument, "the spectrum was made for a convolution of another size");
     }
   }
   void check(const Workspace<Real>& workspace) const {
-    if (workspace.field.size() != carrier->field_size() || workspace.scratch_size != carrier->scratch_size() ||
+    if (workspace.field.size() < carrier->field_size() || workspace.scratch_size < carrier->scratch_size() ||
         workspace.scratch.size() < workspace.scratch_size * static_cast<std::size_t>(backend.arena.threads())) {
       fail(Status::invalid_argument,
            "the workspace was made for a convolution of another size or another number of threads");
@@ -145,10 +168,22 @@ std::size_t Convolution<Real>::workspace_bytes() const {
 }
 
 template <class Real>
-Spectrum<Real> Convolution<Real>::spectrum(const double* kernel, Parity parity_x, Parity parity_y) const {
+Spectrum<Real> Convolution<Real>::spectrum(const double* kernel, Parity parity_x, Parity parity_y,
+                                           Workspace<Real>* workspace) const {
   const Implementation& my = *implementation_;
   if (my.boundary != Boundary::free) {
     fail(Status::wrong_state, "a kernel in space is for a free boundary; this convolution is periodic");
+  }
+  if constexpr (std::is_same_v<Real, double>) {
+    if (my.carrier->transforms_kernels()) {
+      std::unique_ptr<Workspace<Real>> own;
+      if (workspace == nullptr) {
+        own = this->workspace();
+        workspace = own.get();
+      }
+      my.check(*workspace);
+      return my.transformed_kernel(kernel, parity_x, parity_y, *workspace);
+    }
   }
   const KernelTransform transform(my.backend, kernel, my.nx, my.ny, my.carrier->padded_nx() / 2,
                                   my.carrier->padded_ny() / 2, parity_x, parity_y);
@@ -156,28 +191,39 @@ Spectrum<Real> Convolution<Real>::spectrum(const double* kernel, Parity parity_x
 }
 
 template <class Real>
-Spectrum<Real> Convolution<Real>::spectrum_of_symbol(
-    FunctionRef<double(std::int64_t kx, std::int64_t ky)> symbol) const {
+Spectrum<Real> Convolution<Real>::spectrum_of_symbol(FunctionRef<double(std::int64_t kx, std::int64_t ky)> symbol,
+                                                     Parity parity_x, Parity parity_y) const {
   const Implementation& my = *implementation_;
   if (my.boundary != Boundary::periodic) {
     fail(Status::wrong_state, "a symbol is for a periodic boundary; this convolution is free");
   }
-  const double scale = 1.0 / (static_cast<double>(my.nx) * static_cast<double>(my.ny));
-  return my.arranged(Parity::even, Parity::even, [&](std::int64_t mx, std::int64_t my_) {
-    return scale * symbol(std::min(mx, my.nx - mx), std::min(my_, my.ny - my_));
+  const bool both_odd = parity_x == Parity::odd && parity_y == Parity::odd;
+  const double scale = (both_odd ? -1.0 : 1.0) / (static_cast<double>(my.nx) * static_cast<double>(my.ny));
+  return my.arranged(parity_x, parity_y, [&](std::int64_t mx, std::int64_t my_) {
+    const double sign = sign_of_frequency(mx, my.nx, parity_x) * sign_of_frequency(my_, my.ny, parity_y);
+    return sign == 0 ? 0.0 : sign * scale * symbol(std::min(mx, my.nx - mx), std::min(my_, my.ny - my_));
   });
 }
 
 template <class Real>
 std::unique_ptr<Workspace<Real>> Convolution<Real>::workspace() const {
-  const Implementation& my = *implementation_;
   auto workspace = std::make_unique<Workspace<Real>>();
-  workspace->field = Buffer<Real>::uninitialised(my.carrier->field_size());
-  prefer_large_pages(workspace->field.data(), workspace->field.bytes());
-  std::fill(workspace->field.begin(), workspace->field.end(), Real{0});
-  workspace->scratch_size = my.carrier->scratch_size();
-  workspace->scratch = Buffer<Real>(workspace->scratch_size * static_cast<std::size_t>(my.backend.arena.threads()));
+  enlarge(*workspace);
   return workspace;
+}
+
+template <class Real>
+void Convolution<Real>::enlarge(Workspace<Real>& workspace) const {
+  const Implementation& my = *implementation_;
+  if (workspace.field.size() < my.carrier->field_size()) {
+    workspace.field = {};
+    workspace.field = Buffer<Real>::uninitialised(my.carrier->field_size());
+    prefer_large_pages(workspace.field.data(), workspace.field.bytes());
+    std::fill(workspace.field.begin(), workspace.field.end(), Real{0});
+  }
+  workspace.scratch_size = std::max(workspace.scratch_size, my.carrier->scratch_size());
+  const std::size_t scratch = workspace.scratch_size * static_cast<std::size_t>(my.backend.arena.threads());
+  if (workspace.scratch.size() < scratch) workspace.scratch = Buffer<Real>(scratch);
 }
 
 template <class Real>

@@ -39,11 +39,12 @@ enum class Parity : std::int32_t { even = 0, odd = 1 };
 /// Which transform carries a convolution. automatic: the faster one for the size.
 enum class Method : std::int32_t { automatic = 0, lanes = 1, fftw = 2 };
 
-/// The spectrum of one kernel, ready for the Convolution that made it (and every other of equal geometry).
+/// The spectrum of one kernel, ready for the Convolution that made it, and for every other of equal geometry, method
+/// and instruction set.
 /// Immutable: may be shared between threads.
 template <class Real>
 struct Spectrum {
-  Buffer<Real> values;  // layout: private to the Convolution
+  Buffer<Real> values;  // layout: private to the Convolution; depends on its method and instruction set
   Parity parity_x = Parity::even;
   Parity parity_y = Parity::even;
 };
@@ -86,14 +87,20 @@ class Convolution {
   std::size_t workspace_bytes() const;  // of one Workspace
 
   /// Spectrum of the kernel whose values at offsets (i, j), 0 <= i < nx, 0 <= j < ny, are kernel[j·nx + i];
-  /// negative offsets follow from the parities. Free boundary only.
-  Spectrum<Real> spectrum(const double* kernel, Parity parity_x, Parity parity_y) const;
+  /// negative offsets follow from the parities. Free boundary only. The workspace, if there is one, spares memory.
+  Spectrum<Real> spectrum(const double* kernel, Parity parity_x, Parity parity_y,
+                          Workspace<Real>* workspace = nullptr) const;
 
   /// Spectrum given by its own values: symbol(kx, ky) for wave numbers 0 <= kx <= nx/2, 0 <= ky <= ny/2 (cycles per
-  /// period), even in both; result = Σ_q symbol(|q|) source^(q) e^{iqx}. Periodic boundary only.
-  Spectrum<Real> spectrum_of_symbol(FunctionRef<double(std::int64_t kx, std::int64_t ky)> symbol) const;
+  /// period); result = Σ_q s(q) source^(q) e^{iqx} with s(q) = symbol(|qx|, |qy|), along an odd axis times −i sign(q)
+  /// and zero at the Nyquist wave number, which stands for both signs. Periodic boundary only.
+  Spectrum<Real> spectrum_of_symbol(FunctionRef<double(std::int64_t kx, std::int64_t ky)> symbol,
+                                    Parity parity_x = Parity::even, Parity parity_y = Parity::even) const;
 
   std::unique_ptr<Workspace<Real>> workspace() const;
+
+  /// Makes a workspace of another convolution serve this one as well: convolutions that take turns share one.
+  void enlarge(Workspace<Real>& workspace) const;
 
   /// source and result: nx·ny values, row-major; they may be the same array. Threads of the arena share the work;
   /// the bits do not depend on their number.

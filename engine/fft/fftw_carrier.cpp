@@ -315,7 +315,9 @@ class PeriodicByFftw final : public Carrier<Real> {
     for (std::int64_t c = 0; c < columns; ++c) {
       Real* sequence = sequences + c * sequence_;
       forward_y_(sequence, scratch);
-      multiply(spectrum.values.data() + (first + c) * half_ny_, scratch);
+      std::copy_n(scratch, 2 * ny_, sequence);
+      std::fill_n(scratch, 2 * ny_, Real{0});
+      add_product(spectrum, first + c, sequence, scratch);
       backward_y_(scratch, sequence);
     }
     scatter(sequences, columns, rows);
@@ -337,13 +339,7 @@ class PeriodicByFftw final : public Carrier<Real> {
     for (std::int64_t c = 0; c < columns; ++c) {
       std::fill(scratch, scratch + 2 * ny_, Real{0});
       for (const Term<Real>& term : terms) {
-        const Real* values = term.spectrum->values.data() + (first + c) * half_ny_;
-        const Real* source = term.source->values.data() + (first + c) * sequence_;
-        for (std::int64_t m = 0; m < ny_; ++m) {
-          const Real value = values[std::min(m, ny_ - m)];
-          scratch[2 * m] += value * source[2 * m];
-          scratch[2 * m + 1] += value * source[2 * m + 1];
-        }
+        add_product(*term.spectrum, first + c, term.source->values.data() + (first + c) * sequence_, scratch);
       }
       backward_y_(scratch, sequences + c * sequence_);
     }
@@ -367,14 +363,16 @@ class PeriodicByFftw final : public Carrier<Real> {
     }
   }
 
-  void multiply(const Real* values, Real* sequence) const {
-    for (std::int64_t m = 0; m < half_ny_; ++m) {
-      sequence[2 * m] *= values[m];
-      sequence[2 * m + 1] *= values[m];
-    }
-    for (std::int64_t m = half_ny_; m < ny_; ++m) {
-      sequence[2 * m] *= values[ny_ - m];
-      sequence[2 * m + 1] *= values[ny_ - m];
+  /// sum += spectrum · source for one column. One factor −i is left where the parities differ.
+  void add_product(const Spectrum<Real>& spectrum, std::int64_t column, const Real* source, Real* sum) const {
+    const Real* values = spectrum.values.data() + column * half_ny_;
+    const Real mirror = spectrum.parity_y == Parity::even ? Real{1} : Real{-1};
+    const bool turn = spectrum.parity_x != spectrum.parity_y;
+    for (std::int64_t m = 0; m < ny_; ++m) {
+      const Real value = m < half_ny_ ? values[m] : mirror * values[ny_ - m];
+      const Real re = value * source[2 * m], im = value * source[2 * m + 1];
+      sum[2 * m] += turn ? im : re;
+      sum[2 * m + 1] += turn ? -re : im;
     }
   }
 

@@ -9,8 +9,8 @@
 
 namespace brinell::fft {
 
-/// Radices of the stages for length n = 2^a 3^b 5^c, first to last; empty for n = 1. Throws nothing; for other n the
-/// product of the result is not n.
+/// Radices of the stages for length n >= 1, first to last; their product is n if n is 2^a 3^b 5^c, and a divisor of n
+/// otherwise.
 std::vector<std::int32_t> tree_radices(std::int64_t n);
 
 /// Whether n >= 1 is 2^a 3^b 5^c.

@@ -99,6 +99,8 @@ std::uint64_t checksum(std::span<const std::byte> bytes) {
 
 std::vector<std::byte> Run::save() const {
   Writer out;
+  out.bytes.reserve(scene_.grid().nodes() * sizeof(double) +
+                    (trace_.size() + increments_.size() + 8) * sizeof(Increment));
   out.put_bytes(kMagic, sizeof kMagic);
   out.put(kVersion);
   out.put(kByteOrder);
@@ -112,10 +114,13 @@ std::vector<std::byte> Run::save() const {
   put(step_origin_.approach);
   put(solving_seconds_);
   for (const double seconds : stage_seconds_) put(seconds);
-  put(last_.total);
-  put(last_.approach);
-  out.put(static_cast<std::uint64_t>(increments_.empty() ? 0 : last_.pressure.size()));
-  if (!increments_.empty()) out.put_bytes(last_.pressure.data(), last_.pressure.size() * sizeof(double));
+  if (!increments_.empty()) {
+    const contact::Solver::State state = solver_->state();
+    put(state.total);
+    put(state.approach);
+    out.put(static_cast<std::uint64_t>(state.pressure.size()));
+    out.put_bytes(state.pressure.data(), state.pressure.size() * sizeof(double));
+  }
   out.put(checksum(out.bytes));
   return std::move(out.bytes);
 }
@@ -158,15 +163,17 @@ std::unique_ptr<Run> Run::load(Engine& engine, const Scene& scene, std::span<con
   get(run->step_origin_.approach);
   get(run->solving_seconds_);
   for (double& seconds : run->stage_seconds_) get(seconds);
-  get(run->last_.total);
-  get(run->last_.approach);
-  in.get(count);
   if (run->increments_.empty()) return run;
-  if (count != scene.grid().nodes()) damaged("its grid is not the scene's");
-  run->last_.pressure = Buffer<double>::uninitialised(count);
-  in.get_bytes(run->last_.pressure.data(), count * sizeof(double));
+
+  contact::Solver::State state;
+  get(state.total);
+  get(state.approach);
+  in.get(count);
+  if (count != (state.total > 0 ? scene.grid().nodes() : 0)) damaged("its grid is not the scene's");
+  state.pressure = Buffer<double>::uninitialised(count);
+  in.get_bytes(state.pressure.data(), count * sizeof(double));
   run->prepare();
-  run->solver_->restore(run->last_);
+  run->solver_->restore(state);
   return run;
 }
 

@@ -44,7 +44,7 @@ Engine::Engine(const EngineOptions& options)
   if (options.wisdom.empty()) return;
   const std::size_t separator = options.wisdom.find(kWisdomSeparator);
   if (separator == std::string::npos) {
-    fail(Status::damaged_data, "wisdom: the text is not one that brinell exported");
+    fail(Status::invalid_argument, "wisdom: the text is not one that brinell exported");
   }
   plans_.import_wisdom<double>(options.wisdom.substr(0, separator));
   plans_.import_wisdom<float>(options.wisdom.substr(separator + 1));

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "contact/solver.h"
+#include "scene/load_history.h"
 
 namespace brinell::scene {
 
@@ -29,7 +30,7 @@ Plan::Plan(Engine& engine, const Scene& scene) {
        contact::Solver::parts(engine.resources().backend, grid, scene.boundary(), scene.solver().mixed_precision)) {
     items.push_back({"contact", part.what, part.bytes});
   }
-  items.push_back({"contact", "last solved pressure, to go back to", field});
+  if (total_increments(scene.steps()) > 1) items.push_back({"contact", "last solved pressure, to go back to", field});
   for (const PlanItem& item : items) memory_bytes += item.bytes;
   refuse_beyond(engine.memory_limit(), static_cast<double>(memory_bytes), grid, "");
 }

@@ -60,7 +60,6 @@ void Run::prepare() {
   stage_seconds_[static_cast<int>(Stage::contact)] += seconds_since(start);
   if (increments_.empty()) {
     step_origin_ = {0, std::min(0.0, solver_->first_touch())};
-    last_ = solver_->state();
   }
 }
 
@@ -78,6 +77,7 @@ const Increment& Run::advance(const std::function<bool(const Progress&)>& procee
   const Target target = target_of(scene_.steps()[static_cast<std::size_t>(position.step)], position.increment,
                                   step_origin_, scene_.grid());
 
+  const contact::Solver::State before = solver_->state();
   const std::size_t traced = trace_.size();
   const auto observe = [&](const contact::Report& report) {
     const double seconds = seconds_since(start);
@@ -93,11 +93,10 @@ const Increment& Run::advance(const std::function<bool(const Progress&)>& procee
                        scene_.solver().tolerance, scene_.solver().max_iterations, observe);
   } catch (...) {
     trace_.resize(traced);
-    solver_->restore(last_);
+    solver_->restore(before);
     throw;
   }
   increments_.push_back(summary(solution, position));
-  last_ = solver_->state();
 
   const double seconds = seconds_since(start);
   increments_.back().wall_seconds = seconds;

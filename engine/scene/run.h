@@ -65,6 +65,7 @@ class Run {
   Run(Engine& engine, const Scene& scene);
 
   const Plan& plan() const { return plan_; }
+  double tolerance() const { return scene_.solver().tolerance; }
   std::int32_t total() const { return total_increments(scene_.steps()); }
   const std::vector<Increment>& increments() const { return increments_; }
   const std::vector<TracePoint>& trace() const { return trace_; }
@@ -99,8 +100,7 @@ class Run {
   std::unique_ptr<contact::Solver> solver_;
 
   // What the next increment starts from:
-  Origin step_origin_;           // of the step under way
-  contact::Solver::State last_;  // after the last solved increment
+  Origin step_origin_;  // of the step under way
   std::vector<Increment> increments_;
   std::vector<TracePoint> trace_;
   double solving_seconds_ = 0;

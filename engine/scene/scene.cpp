@@ -90,8 +90,8 @@ void Scene::set_grid(const Grid& grid, Boundary boundary) {
   for (const SurfaceEntry& entry : surfaces_) holds_heights = holds_heights || std::holds_alternative<Heights>(entry);
   require(!holds_heights || (grid.nx == grid_.nx && grid.ny == grid_.ny), Status::wrong_state,
           "nodes = " + std::to_string(grid.nx) + " x " + std::to_string(grid.ny) +
-              ": the scene already holds heights on " + std::to_string(grid_.nx) + " x " + std::to_string(grid_.ny) +
-              " nodes");
+              ": the grid cannot change, the scene already holds heights on " + std::to_string(grid_.nx) + " x " +
+              std::to_string(grid_.ny) + " nodes");
   grid_ = grid;
   boundary_ = boundary;
 }
@@ -141,9 +141,9 @@ void Scene::add(const Step& step) {
           ": a step needs exactly one of 1 (force), 2 (approach), 3 (mean pressure)");
   require(step.increments >= 1, Status::invalid_argument,
           "increments = " + std::to_string(step.increments) + ": must be at least 1");
-  const char* name = step.drive == StepDrive::force      ? "normal_force"
-                     : step.drive == StepDrive::approach ? "approach"
-                                                         : "mean_pressure";
+  const char* name = step.drive == StepDrive::force      ? "target (normal_force)"
+                     : step.drive == StepDrive::approach ? "target (approach)"
+                                                         : "target (mean_pressure)";
   require(std::isfinite(step.target), Status::invalid_argument,
           std::string(name) + " = " + text(step.target) + ": must be finite");
   require(step.drive == StepDrive::approach || step.target >= 0, Status::invalid_argument,

@@ -7,6 +7,7 @@
 #include "simd/contact_kernels.h"
 #include "simd/influence_kernels.h"
 #include "simd/isa.h"
+#include "simd/subsurface_kernels.h"
 #include "simd/transform_kernels.h"
 
 namespace brinell::simd {
@@ -23,6 +24,7 @@ struct KernelTable {
   RealKernels<double> in_double;
   RealKernels<float> in_single;
   InfluenceKernels influence;
+  SubsurfaceKernels subsurface;
 
   template <class Real>
   const RealKernels<Real>& of() const {

@@ -65,7 +65,7 @@ template <class Real>
 struct BlockProduct {
   const Real* spectrum;       // [position][lane]
   bool turn_x;                // times −i in the complex numbers of the x transform (kernel odd in x)
-  bool turn_y;                // times −i in those of the y transform (kernel odd in y)
+  bool turn_y;                // times −i in those of the y transform (kernel odd in y); periodic: in the only ones
   const Real* next_field;     // may be null
   const Real* next_spectrum;  // may be null
 };
@@ -83,7 +83,7 @@ template <class Real>
 struct TransformKernels {
   std::int64_t lanes;
 
-  /// Rows begin … end − 1 of source (or result) to and from the field. scratch: 4·length + 4·lanes Reals.
+  /// Rows begin … end − 1 of source (or result) to and from the field. scratch: 3·length Reals.
   void (*rows_forward)(const RowTransform<Real>& transform, std::int64_t begin, std::int64_t end, const Real* source,
                        Real* field, Real* scratch);
   void (*rows_backward)(const RowTransform<Real>& transform, std::int64_t begin, std::int64_t end, const Real* field,
@@ -99,6 +99,10 @@ struct TransformKernels {
   void (*free_forward)(const ColumnTransform<Real>& transform, const Real* field, Real* transformed);
   void (*free_sum)(const ColumnTransform<Real>& transform, const BlockTerm<Real>* terms, std::int64_t count,
                    Real* field, Real* scratch);
+  /// One block of a kernel's spectrum from the field of its quarter: of the real (odd: minus the imaginary) parts of
+  /// both transforms, times scale. scratch: 2·lanes·length Reals.
+  void (*free_spectrum)(const ColumnTransform<Real>& transform, const Real* field, bool odd_x, bool odd_y, Real scale,
+                        Real* spectrum, Real* scratch);
   void (*periodic_forward)(const ColumnTransform<Real>& transform, const Real* field, Real* transformed);
   void (*periodic_sum)(const ColumnTransform<Real>& transform, const BlockTerm<Real>* terms, std::int64_t count,
                        Real* field);

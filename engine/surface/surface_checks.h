@@ -18,7 +18,7 @@ namespace brinell::surface {
 
 inline void check_grid(const Grid& grid) {
   if (grid.nx < 1 || grid.ny < 1) {
-    fail(Status::invalid_argument, "grid has " + std::to_string(grid.nx) + " x " + std::to_string(grid.ny) +
+    fail(Status::invalid_argument, "grid has nx = " + std::to_string(grid.nx) + ", ny = " + std::to_string(grid.ny) +
                                        " nodes; at least 1 x 1 is needed");
   }
   if (!(grid.dx > 0) || !std::isfinite(grid.dx)) refuse("grid spacing dx", grid.dx, "positive and finite [m]");

@@ -110,7 +110,7 @@ static void shapes(void) {
   REFUSED(scene, brn_scene_add_shape(scene, &shape), "radius|0");
   shape.radius = 1e-3;
   shape.edge_radius = -1e-4;
-  REFUSED(scene, brn_scene_add_shape(scene, &shape), "edge_radius|-0.0001");
+  REFUSED(scene, brn_scene_add_shape(scene, &shape), "edge_radius|-1e-04");
 
   brn_shape_init(&shape);
   shape.kind = BRN_SHAPE_ROLLER;

@@ -71,7 +71,8 @@ TYPED_TEST(PreconditionerIn, is_symmetric_and_positive_definite) {
         if (part * static_cast<double>(grid.nodes()) > 500) continue;
         const std::vector<double> p = random_contact(grid, part, 7);
         const Nodes nodes = nodes_of(p);
-        Preconditioner<Real> preconditioner(bench.resources, grid, boundary);
+        fft::Workspace<Real> workspace;
+        Preconditioner<Real> preconditioner(bench.resources, grid, boundary, workspace);
         Passes<Real> passes(bench.arena, bench.resources.backend.kernels, grid.nodes());
         Buffer<Real> scratch(grid.nodes());
         for (const bool large_scales : {true, false}) {
@@ -101,7 +102,8 @@ TEST(Preconditioner, times_the_compliance_is_well_conditioned) {
   for (const double part : {0.05, 0.2, 0.4}) {
     const std::vector<double> p = random_contact(grid, part, 3);
     const Nodes nodes = nodes_of(p);
-    Preconditioner<double> preconditioner(bench.resources, grid, Boundary::free);
+    fft::Workspace<double> workspace;
+    Preconditioner<double> preconditioner(bench.resources, grid, Boundary::free, workspace);
     Passes<double> passes(bench.arena, bench.resources.backend.kernels, grid.nodes());
     Buffer<double> scratch(grid.nodes());
     preconditioner.adapt(passes, p.data(), scratch.data());

@@ -230,7 +230,7 @@ TEST(Shapes, refuse_grids_and_gaps_that_do_not_fit) {
   };
   EXPECT_NO_THROW(add({3, 2, 1, 1})());
   expect_refused(add({3, 3, 1, 1}), {"6", "9"});
-  expect_refused(add({0, 2, 1, 1}), {"0 x 2"});
+  expect_refused(add({0, 2, 1, 1}), {"nx = 0"});
   expect_refused(add({3, 2, 0, 1}), {"dx is 0"});
   expect_refused(add({3, 2, 1, -1}), {"dy is -1"});
   expect_refused(add({3, 2, 1, 1}, {kInfinity, 0}), {"centre x", "inf"});

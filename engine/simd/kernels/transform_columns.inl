@@ -188,7 +188,8 @@ template <class Arch, class Real>
 void periodic_block(const ColumnTransform<Real>& transform, const BlockProduct<Real>& product, Real* field) {
   const auto bytes = static_cast<std::int64_t>(sizeof(Real)) * kLanes<Arch, Real>;
   Prefetch prefetch{reinterpret_cast<const char*>(product.next_field), 2 * bytes};
-  convolve_nodes<Arch, false>(transform.tree, 0, 0, 1, transform.tree.length, field, product.spectrum, prefetch);
+  const auto convolve = product.turn_y ? convolve_nodes<Arch, true, Real> : convolve_nodes<Arch, false, Real>;
+  convolve(transform.tree, 0, 0, 1, transform.tree.length, field, product.spectrum, prefetch);
 }
 
 }  // namespace
