@@ -123,9 +123,18 @@ DirectContact direct_contact(const Grid& grid, Boundary boundary, const std::vec
   }
   Eigen::VectorXd pressure;
   for (int change = 0; change < kMostChanges && !contact.solved; ++change) {
-    const Eigen::VectorXd ones = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(active.size()));
-    const Eigen::VectorXd h = heights(active);
-    const Eigen::LLT<Eigen::MatrixXd> factors(compliance(active, active));
+    const auto count = static_cast<Eigen::Index>(active.size());
+    const Eigen::VectorXd ones = Eigen::VectorXd::Ones(count);
+    Eigen::VectorXd h(count);
+    Eigen::MatrixXd among(count, count);
+    for (Eigen::Index column = 0; column < count; ++column) {
+      h[column] = heights[active[static_cast<std::size_t>(column)]];
+      for (Eigen::Index row = 0; row < count; ++row) {
+        among(row, column) =
+            compliance(active[static_cast<std::size_t>(row)], active[static_cast<std::size_t>(column)]);
+      }
+    }
+    const Eigen::LLT<Eigen::MatrixXd> factors(among);
     if (factors.info() != Eigen::Success) return contact;
     Eigen::VectorXd p;
     if (drive == contact::Drive::force) {
@@ -136,7 +145,7 @@ DirectContact direct_contact(const Grid& grid, Boundary boundary, const std::vec
       p = factors.solve(target * ones - h);
     }
     pressure = Eigen::VectorXd::Zero(nodes);
-    pressure(active) = p;
+    for (Eigen::Index at = 0; at < count; ++at) pressure[active[static_cast<std::size_t>(at)]] = p[at];
     const Eigen::VectorXd g = heights + compliance * pressure;
     std::vector<Eigen::Index> next;
     std::vector<bool> was_active(grid.nodes(), false);
