@@ -44,6 +44,12 @@ class Carrier {
   virtual void arrange(std::int64_t block, FunctionRef<double(std::int64_t mx, std::int64_t my)> value,
                        Real* spectrum) const = 0;
 
+  /// Whether the carrier itself can transform kernels given in space, and one block of such a spectrum, from the
+  /// field of the kernel's quarter whose values on the axes are halved along even axes: even sums are twice the real
+  /// part of what a source's are, odd ones minus twice the imaginary part.
+  virtual bool transforms_kernels() const { return false; }
+  virtual void spectrum_block(std::int64_t, Parity, Parity, const Real*, Real*, Real*) const {}
+
   virtual void rows_forward(std::int64_t begin, std::int64_t end, const Real* source, Real* field,
                             Real* scratch) const = 0;
   virtual void convolve_block(std::int64_t block, const Spectrum<Real>& spectrum, Real* field,

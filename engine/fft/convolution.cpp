@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include "base/error.h"
@@ -58,6 +59,21 @@ struct Convolution<Real>::Implementation {
     Spectrum<Real> spectrum{Buffer<Real>(carrier->spectrum_size()), parity_x, parity_y};
     backend.arena.for_chunks(carrier->blocks(), 1, [&](std::int64_t begin, std::int64_t end, int) {
       for (std::int64_t block = begin; block < end; ++block) carrier->arrange(block, value, spectrum.values.data());
+    });
+    return spectrum;
+  }
+
+  /// A kernel's quarter transformed as sources are.
+  Spectrum<Real> transformed_kernel(const Real* kernel, Parity parity_x, Parity parity_y,
+                                    Workspace<Real>& workspace) const {
+    auto quarter = Buffer<Real>::uninitialised(static_cast<std::size_t>(nx * ny));
+    std::copy_n(kernel, quarter.size(), quarter.data());
+    for (std::int64_t i = 0; parity_y == Parity::even && i < nx; ++i) quarter[static_cast<std::size_t>(i)] /= 2;
+    for (std::int64_t j = 0; parity_x == Parity::even && j < ny; ++j) quarter[static_cast<std::size_t>(j * nx)] /= 2;
+    rows_forward(quarter.data(), workspace);
+    Spectrum<Real> spectrum{Buffer<Real>::uninitialised(carrier->spectrum_size()), parity_x, parity_y};
+    for_blocks(workspace, [&](std::int64_t block, Real* scratch) {
+      carrier->spectrum_block(block, parity_x, parity_y, workspace.field.data(), spectrum.values.data(), scratch);
     });
     return spectrum;
   }
@@ -152,10 +168,22 @@ std::size_t Convolution<Real>::workspace_bytes() const {
 }
 
 template <class Real>
-Spectrum<Real> Convolution<Real>::spectrum(const double* kernel, Parity parity_x, Parity parity_y) const {
+Spectrum<Real> Convolution<Real>::spectrum(const double* kernel, Parity parity_x, Parity parity_y,
+                                           Workspace<Real>* workspace) const {
   const Implementation& my = *implementation_;
   if (my.boundary != Boundary::free) {
     fail(Status::wrong_state, "a kernel in space is for a free boundary; this convolution is periodic");
+  }
+  if constexpr (std::is_same_v<Real, double>) {
+    if (my.carrier->transforms_kernels()) {
+      std::unique_ptr<Workspace<Real>> own;
+      if (workspace == nullptr) {
+        own = this->workspace();
+        workspace = own.get();
+      }
+      my.check(*workspace);
+      return my.transformed_kernel(kernel, parity_x, parity_y, *workspace);
+    }
   }
   const KernelTransform transform(my.backend, kernel, my.nx, my.ny, my.carrier->padded_nx() / 2,
                                   my.carrier->padded_ny() / 2, parity_x, parity_y);

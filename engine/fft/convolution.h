@@ -87,8 +87,9 @@ class Convolution {
   std::size_t workspace_bytes() const;  // of one Workspace
 
   /// Spectrum of the kernel whose values at offsets (i, j), 0 <= i < nx, 0 <= j < ny, are kernel[j·nx + i];
-  /// negative offsets follow from the parities. Free boundary only.
-  Spectrum<Real> spectrum(const double* kernel, Parity parity_x, Parity parity_y) const;
+  /// negative offsets follow from the parities. Free boundary only. The workspace, if there is one, spares memory.
+  Spectrum<Real> spectrum(const double* kernel, Parity parity_x, Parity parity_y,
+                          Workspace<Real>* workspace = nullptr) const;
 
   /// Spectrum given by its own values: symbol(kx, ky) for wave numbers 0 <= kx <= nx/2, 0 <= ky <= ny/2 (cycles per
   /// period); result = Σ_q s(q) source^(q) e^{iqx} with s(q) = symbol(|qx|, |qy|), along an odd axis times −i sign(q)

@@ -117,6 +117,16 @@ class ByLanes final : public Carrier<Real> {
     forward(columns_, field + block * rows_.block_stride, transform + block * transform_of_block());
   }
 
+  bool transforms_kernels() const override { return boundary_ == Boundary::free; }
+
+  void spectrum_block(std::int64_t block, Parity parity_x, Parity parity_y, const Real* field, Real* spectrum,
+                      Real* scratch) const override {
+    const double scale = 4 / (static_cast<double>(rows_.length) * static_cast<double>(length_y_));
+    kernels_.free_spectrum(columns_, field + block * rows_.block_stride, parity_x == Parity::odd,
+                           parity_y == Parity::odd, static_cast<Real>(scale), spectrum + block * length_y_ * lanes_,
+                           scratch);
+  }
+
   void sum_block(std::int64_t block, std::span<const Term<Real>> terms, Real* field, Real* scratch) const override {
     std::vector<simd::BlockTerm<Real>> products;
     products.reserve(terms.size());

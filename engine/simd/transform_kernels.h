@@ -99,6 +99,10 @@ struct TransformKernels {
   void (*free_forward)(const ColumnTransform<Real>& transform, const Real* field, Real* transformed);
   void (*free_sum)(const ColumnTransform<Real>& transform, const BlockTerm<Real>* terms, std::int64_t count,
                    Real* field, Real* scratch);
+  /// One block of a kernel's spectrum from the field of its quarter: of the real (odd: minus the imaginary) parts of
+  /// both transforms, times scale. scratch: 2·lanes·length Reals.
+  void (*free_spectrum)(const ColumnTransform<Real>& transform, const Real* field, bool odd_x, bool odd_y, Real scale,
+                        Real* spectrum, Real* scratch);
   void (*periodic_forward)(const ColumnTransform<Real>& transform, const Real* field, Real* transformed);
   void (*periodic_sum)(const ColumnTransform<Real>& transform, const BlockTerm<Real>* terms, std::int64_t count,
                        Real* field);

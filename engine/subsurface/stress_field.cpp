@@ -203,7 +203,8 @@ void StressField::generate(Work& work) {
       worker.coefficients = Buffer<double>::uninitialised(kComponents * request_.grid.nodes());
     }
     generate_spectra(inner_backend(), convolution_, request_, request_.depths[static_cast<std::size_t>(layer)],
-                     traction, index_, worker.coefficients, *target[static_cast<std::size_t>(layer - work.first)]);
+                     traction, index_, worker.coefficients, *worker.workspace,
+                     *target[static_cast<std::size_t>(layer - work.first)]);
   };
   try {
     for_tasks(static_cast<std::int64_t>(tasks.size()), one);

@@ -107,7 +107,7 @@ bool SpectrumIndex::generates(int traction) const {
 
 void generate_spectra(const fft::Backend& backend, const fft::Convolution<double>& convolution,
                       const StressRequest& request, double depth, Traction traction, const SpectrumIndex& index,
-                      Buffer<double>& coefficients, LayerSpectra& spectra) {
+                      Buffer<double>& coefficients, fft::Workspace<double>& workspace, LayerSpectra& spectra) {
   const Grid& grid = request.grid;
   const int source = static_cast<int>(traction);
   if (request.boundary == Boundary::periodic) {
@@ -130,7 +130,7 @@ void generate_spectra(const fft::Backend& backend, const fft::Convolution<double
     if (index.generated(source, c) < 0) continue;
     const influence::Parities parities = influence::stress_parities(traction, static_cast<StressComponent>(c));
     spectra[static_cast<std::size_t>(index.generated(source, c))] =
-        convolution.spectrum(targets[static_cast<std::size_t>(c)], parities.x, parities.y);
+        convolution.spectrum(targets[static_cast<std::size_t>(c)], parities.x, parities.y, &workspace);
   }
 }
 

@@ -48,6 +48,6 @@ using LayerSpectra = std::vector<fft::Spectrum<double>>;  // by number
 /// Fills the spectra of one traction into the layer. coefficients: scratch of 6·nx·ny values (free boundary only).
 void generate_spectra(const fft::Backend& backend, const fft::Convolution<double>& convolution,
                       const StressRequest& request, double depth, Traction traction, const SpectrumIndex& index,
-                      Buffer<double>& coefficients, LayerSpectra& spectra);
+                      Buffer<double>& coefficients, fft::Workspace<double>& workspace, LayerSpectra& spectra);
 
 }  // namespace brinell::subsurface

@@ -8,9 +8,10 @@ namespace {
 
 template <class Arch, class Real>
 constexpr TransformKernels<Real> transform_kernels() {
-  return {kLanes<Arch, Real>,     rows_forward<Arch, Real>,     rows_backward<Arch, Real>,
-          free_block<Arch, Real>, periodic_block<Arch, Real>,   free_forward<Arch, Real>,
-          free_sum<Arch, Real>,   periodic_forward<Arch, Real>, periodic_sum<Arch, Real>};
+  return {kLanes<Arch, Real>,      rows_forward<Arch, Real>,   rows_backward<Arch, Real>,
+          free_block<Arch, Real>,  periodic_block<Arch, Real>, free_forward<Arch, Real>,
+          free_sum<Arch, Real>,    free_spectrum<Arch, Real>,  periodic_forward<Arch, Real>,
+          periodic_sum<Arch, Real>};
 }
 
 }  // namespace

@@ -45,22 +45,38 @@ void sum_of_products(const BlockTerm<Real>* terms, std::int64_t count, std::int6
   }
 }
 
+/// One part of the field (0: real, 1: imaginary), in which `field` begins.
 template <class Arch, class Real>
-void free_forward(const ColumnTransform<Real>& transform, const Real* field, Real* transformed) {
+void forward_of_part(const ColumnTransform<Real>& transform, const Real* field, Real* transformed) {
   using V = Batch<Arch, Real>;
   constexpr std::int64_t lanes = kLanes<Arch, Real>;
   const TransformTree<Real>& tree = transform.tree;
-  for (int part = 0; part < 2; ++part, field += lanes, transformed += tree.length * 2 * lanes) {
-    if (tree.stages == 0) {
-      store(transformed, Complex<V>{V::load_aligned(field), V(Real{0})});
-      continue;
-    }
-    with_radix(tree.radix[0], [&](auto radix) {
-      constexpr std::int64_t R = radix;
-      const std::int64_t h = tree.length / R;
-      split_real<Arch, R>(field, 2 * lanes, transform.ny, h, tree.twiddles[0], transformed);
-      for (std::int64_t t = 0; t < R; ++t) tree_forward<Arch>(tree, 1, t, h, transformed + t * h * 2 * lanes);
-    });
+  if (tree.stages == 0) return store(transformed, Complex<V>{V::load_aligned(field), V(Real{0})});
+  with_radix(tree.radix[0], [&](auto radix) {
+    constexpr std::int64_t R = radix;
+    const std::int64_t h = tree.length / R;
+    split_real<Arch, R>(field, 2 * lanes, transform.ny, h, tree.twiddles[0], transformed);
+    for (std::int64_t t = 0; t < R; ++t) tree_forward<Arch>(tree, 1, t, h, transformed + t * h * 2 * lanes);
+  });
+}
+
+template <class Arch, class Real>
+void free_forward(const ColumnTransform<Real>& transform, const Real* field, Real* transformed) {
+  constexpr std::int64_t lanes = kLanes<Arch, Real>;
+  forward_of_part<Arch>(transform, field, transformed);
+  forward_of_part<Arch>(transform, field + lanes, transformed + transform.tree.length * 2 * lanes);
+}
+
+template <class Arch, class Real>
+void free_spectrum(const ColumnTransform<Real>& transform, const Real* field, bool odd_x, bool odd_y, Real scale,
+                   Real* spectrum, Real* scratch) {
+  using V = Batch<Arch, Real>;
+  constexpr std::int64_t lanes = kLanes<Arch, Real>;
+  forward_of_part<Arch>(transform, field + (odd_x ? lanes : 0), scratch);
+  const V factor(odd_x == odd_y ? scale : -scale);
+  for (std::int64_t p = 0; p < transform.tree.length; ++p) {
+    const V value = V::load_aligned(scratch + p * 2 * lanes + (odd_y ? lanes : 0));
+    (factor * value).store_aligned(spectrum + p * lanes);
   }
 }
 
