@@ -35,6 +35,16 @@ Json pair_json(const double (&values)[2]) {
   return {values[0], values[1]};
 }
 
+Json place_json(const double (&values)[3]) {
+  if (values[0] != values[0]) return nullptr;
+  return {values[0], values[1], values[2]};
+}
+
+Json number_json(double value) {
+  if (value != value) return nullptr;
+  return value;
+}
+
 Json increment_json(const brn_increment& increment) {
   return {{"step", increment.step},
           {"increment", increment.increment},
@@ -49,8 +59,10 @@ Json increment_json(const brn_increment& increment) {
           {"max_pressure", increment.max_pressure},
           {"max_pressure_at", pair_json(increment.max_pressure_at)},
           {"mean_gap", increment.mean_gap},
-          {"max_von_mises", nullptr},
-          {"max_von_mises_at", nullptr},
+          {"max_von_mises", number_json(increment.max_von_mises)},
+          {"max_von_mises_at", place_json(increment.max_von_mises_at)},
+          {"upper_max_von_mises", number_json(increment.upper_max_von_mises)},
+          {"upper_max_von_mises_at", place_json(increment.upper_max_von_mises_at)},
           {"max_equivalent_plastic_strain", nullptr},
           {"max_equivalent_plastic_strain_at", nullptr},
           {"plastic_nodes", nullptr},
