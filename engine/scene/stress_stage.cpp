@@ -68,7 +68,10 @@ std::vector<StressStagePart> StressStage::parts(Engine& engine, const Scene& sce
   for (const Which body : kBodies) {
     if (!wanted.wants(body)) continue;
     std::size_t kept = 0, work = 0;
+    std::vector<subsurface::Sources> seen;
     for (const Step& step : scene.steps()) {
+      if (std::find(seen.begin(), seen.end(), sources_of(step)) != seen.end()) continue;
+      seen.push_back(sources_of(step));
       const auto plan = subsurface::plan_stress(engine.resources().backend,
                                                 request_for(scene, body, sources_of(step)), spectra_limit);
       kept = std::max(kept, plan.kept_bytes);
