@@ -92,6 +92,12 @@ std::string padded(std::string text, std::size_t width) {
   return text;
 }
 
+std::string von_mises_text(double value) {
+  std::array<char, 32> text{"-"};
+  if (value == value) std::snprintf(text.data(), text.size(), "%.5g", value);
+  return padded(text.data(), 11);
+}
+
 }  // namespace
 
 Json summary_json(const SceneFile& file, const brn_engine* engine, brn_run* run, bool interrupted,
@@ -154,14 +160,18 @@ std::string trace_csv(brn_run* run) {
 }
 
 std::string summary_table(brn_run* run) {
-  std::string text =
-      "step  increment  force [N]    approach [m]  area [m2]    max p [Pa]   iterations  certificate\n";
+  const bool below = !depths_of(run).empty();
+  std::string text = "step  increment  force [N]    approach [m]  area [m2]    max p [Pa]   ";
+  text += below ? "von Mises    upper [Pa]   iterations  certificate\n" : "iterations  certificate\n";
   for (int k = 0; k < brn_run_solved_increments(run); ++k) {
     const brn_increment i = increment_of(run, k);
     const double worst = std::max({i.penetration, i.complementarity, i.tension, i.balance});
     std::array<char, 160> line{};
-    std::snprintf(line.data(), line.size(), "%4d  %9d  %-11.5g  %-12.5g  %-11.5g  %-11.5g  %10d  %.1e%s\n", i.step,
-                  i.increment, i.normal_force, i.approach, i.contact_area, i.max_pressure, i.iterations, worst,
+    std::snprintf(line.data(), line.size(), "%4d  %9d  %-11.5g  %-12.5g  %-11.5g  %-11.5g  ", i.step, i.increment,
+                  i.normal_force, i.approach, i.contact_area, i.max_pressure);
+    text += line.data();
+    if (below) text += von_mises_text(i.max_von_mises) + "  " + von_mises_text(i.upper_max_von_mises) + "  ";
+    std::snprintf(line.data(), line.size(), "%10d  %.1e%s\n", i.iterations, worst,
                   i.converged != 0 ? "" : "  not converged");
     text += line.data();
   }
