@@ -25,9 +25,10 @@
  *     handle yet (brn_last_message).
  *   - A create call sets *out to NULL on failure. Destroying NULL does nothing. No exception, abort or exit crosses
  *     this interface.
- *   - Option structs begin with struct_size. Initialise them with their brn_..._init function, which is
- *     compiled into the caller and so fills in the caller's size, and the defaults. Members are only ever appended; the engine reads those that struct_size covers and uses the
- *     defaults for the others, and writes only those of a result that struct_size covers.
+ *   - Option structs begin with struct_size. Initialise them with their brn_..._init function, which is compiled into
+ *     the caller and so fills in the caller's size, and the defaults. Members are only ever appended; the engine
+ * reads those that struct_size covers and uses the defaults for the others, and writes only those of a result that
+ *     struct_size covers.
  *   - The caller owns all arrays; they are borrowed for the duration of the call.
  *   - An engine may be used from several threads at once. A scene or run is used by one thread at a time; a second
  *     one gets BRN_WRONG_STATE. Distinct runs work concurrently on one engine.
@@ -253,9 +254,9 @@ enum { BRN_DETREND_NONE = 0, BRN_DETREND_MEAN = 1, BRN_DETREND_PLANE = 2 };
 typedef struct brn_heights {
   size_t struct_size;
   const double *values;
-  int64_t nx, ny; /* must be the grid's */
+  int64_t nx, ny;             /* must be the grid's */
   int64_t stride_x, stride_y; /* 0: contiguous, 1 and nx */
-  int32_t detrend; /* BRN_DETREND_... */
+  int32_t detrend;            /* BRN_DETREND_... */
   int32_t reserved;
 } brn_heights;
 
@@ -276,10 +277,10 @@ BRN_API brn_status brn_scene_add_heights(brn_scene *scene, const brn_heights *he
 /* Height statistics of ISO 25178-2, each about the mean plane through zero mean height. */
 typedef struct brn_statistics {
   size_t struct_size;
-  double sa, sq;   /* arithmetic and root mean square height [m] */
-  double ssk, sku; /* skewness and kurtosis */
+  double sa, sq;     /* arithmetic and root mean square height [m] */
+  double ssk, sku;   /* skewness and kurtosis */
   double sp, sv, sz; /* highest peak, deepest valley, their sum [m] */
-  double sdq;      /* root mean square gradient */
+  double sdq;        /* root mean square gradient */
 } brn_statistics;
 
 static inline void brn_statistics_init(brn_statistics *value) {
@@ -366,12 +367,12 @@ BRN_API uint64_t brn_run_memory_bytes(const brn_run *run);
 
 typedef struct brn_progress {
   size_t struct_size;
-  int32_t step, increment;   /* being solved */
-  int32_t solved, total;     /* increments of the run */
-  int32_t iteration;         /* on the full grid, in this increment */
+  int32_t step, increment; /* being solved */
+  int32_t solved, total;   /* increments of the run */
+  int32_t iteration;       /* on the full grid, in this increment */
   int32_t reserved;
-  double estimate;           /* of the certificate */
-  double seconds;            /* since the increment began */
+  double estimate; /* of the certificate */
+  double seconds;  /* since the increment began */
 } brn_progress;
 
 /* Called on the thread that called brn_run_advance or brn_run_execute, never concurrently. Return 0 to go on; any
@@ -393,7 +394,7 @@ BRN_API int32_t brn_run_solved_increments(const brn_run *run);
 typedef struct brn_increment {
   size_t struct_size;
   int32_t step, increment;
-  int32_t converged; /* 0 or 1 */
+  int32_t converged;    /* 0 or 1 */
   int32_t iterations;   /* on the full grid */
   int32_t convolutions; /* on the full grid, the certificate's included */
   int32_t reserved;
@@ -475,9 +476,9 @@ BRN_API const char *brn_run_stage_name(const brn_run *run, int32_t index);
 BRN_API double brn_run_stage_seconds(const brn_run *run, int32_t index);
 
 enum {
-  BRN_FIELD_PRESSURE = 1,     /* [Pa] */
-  BRN_FIELD_GAP = 2,          /* of the deformed surfaces [m] */
-  BRN_FIELD_DISPLACEMENT = 3, /* normal, of both bodies together [m] */
+  BRN_FIELD_PRESSURE = 1,      /* [Pa] */
+  BRN_FIELD_GAP = 2,           /* of the deformed surfaces [m] */
+  BRN_FIELD_DISPLACEMENT = 3,  /* normal, of both bodies together [m] */
   BRN_FIELD_UNDEFORMED_GAP = 4 /* [m]; known before the first increment */
 };
 
