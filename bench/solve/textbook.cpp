@@ -35,7 +35,7 @@ Textbook::Textbook(const Grid& grid, Boundary boundary, const double* gap)
 }
 
 TextbookSolution Textbook::solve(contact::Drive drive, double target, double tolerance, std::int32_t max_iterations,
-                                 const std::function<void(std::int32_t)>& observe) {
+                                 const std::function<void(const TextbookSolution&)>& observe) {
   const std::size_t n = nodes_;
   const bool by_force = drive == contact::Drive::force;
   if (!by_force) target /= unit_;
@@ -48,7 +48,6 @@ TextbookSolution Textbook::solve(contact::Drive drive, double target, double tol
   double g_old = 1, delta = 0, step = 0;
 
   while (true) {
-    if (observe) observe(result.iterations);
     compliance_.apply(p_.data(), u_.data());
     ++result.convolutions;
     for (std::size_t i = 0; i < n; ++i) g_[i] = gap_[i] + u_[i];
@@ -73,6 +72,7 @@ TextbookSolution Textbook::solve(contact::Drive drive, double target, double tol
     result.certificate.balance = by_force ? std::fabs(total - target) / target : 0;
     result.approach = approach * unit_;
     result.converged = result.certificate.worst() <= tolerance;
+    if (observe) observe(result);
     const bool lost = !std::isfinite(step);
     if (result.converged || lost || result.iterations >= max_iterations) return result;
 

@@ -38,9 +38,10 @@ class Textbook {
   /// Plans the transforms by measure and fills the spectrum. gap [m] is copied.
   Textbook(const Grid& grid, Boundary boundary, const double* gap);
 
-  /// target: Σ p, or the approach [m]. observe(iteration), if not empty, is called before every iteration.
+  /// target: Σ p, or the approach [m]. observe, if not empty, is told the state before every
+  /// iteration and at the end; pressure() belongs to it.
   TextbookSolution solve(contact::Drive drive, double target, double tolerance, std::int32_t max_iterations,
-                         const std::function<void(std::int32_t)>& observe = {});
+                         const std::function<void(const TextbookSolution&)>& observe = {});
 
   const std::vector<double>& pressure() const { return p_; }
 

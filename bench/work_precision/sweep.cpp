@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <map>
 #include <memory>
 
 #include "measure/clock.h"
@@ -20,6 +19,7 @@ constexpr double kGridTolerance = 1e-8;
 constexpr std::int32_t kTextbookIterations = 3000;
 
 struct Result {
+  double seconds = 0;
   std::vector<double> pressure;  // [Pa]
   double approach = 0;           // [m]
   double certificate = 0;
@@ -51,12 +51,11 @@ double contact_modulus(const cli::SceneFile& scene) {
   return 1 / compliance;
 }
 
-/// One way to solve one scene; a turn returns its seconds.
+/// One way to solve one scene to one or more tolerances.
 class Candidate {
  public:
   virtual ~Candidate() = default;
-  virtual double turn() = 0;
-  virtual Result result() = 0;
+  virtual std::vector<Result> turn() = 0;  // a result for each tolerance
 };
 
 class OfEngine final : public Candidate {
@@ -64,33 +63,29 @@ class OfEngine final : public Candidate {
   OfEngine(brn_engine* engine, const cli::SceneFile& scene)
       : engine_(engine), scene_(cli::build_scene(scene).scene) {}
 
-  double turn() override {
-    run_ = cli::make_run(engine_, scene_.get());
-    field(run_.get(), BRN_FIELD_UNDEFORMED_GAP);  // the surface is not what is timed
+  std::vector<Result> turn() override {
+    const cli::Run run = cli::make_run(engine_, scene_.get());
+    field(run.get(), BRN_FIELD_UNDEFORMED_GAP);  // the surface is not what is timed
     const double start = seconds(Clock::cpu);
-    const brn_status status = brn_run_execute(run_.get(), nullptr, nullptr);
+    const brn_status status = brn_run_execute(run.get(), nullptr, nullptr);
     const double end = seconds(Clock::cpu);
-    if (status != BRN_NOT_CONVERGED) cli::check(status, run_.get());
-    return end - start;
-  }
-
-  Result result() override {
-    const brn_increment last = cli::increment_of(run_.get(), 0);
-    return {field(run_.get(), BRN_FIELD_PRESSURE), last.approach,
-            std::max({last.penetration, last.complementarity, last.tension, last.balance}), last.iterations,
-            last.convolutions};
+    if (status != BRN_NOT_CONVERGED) cli::check(status, run.get());
+    const brn_increment last = cli::increment_of(run.get(), 0);
+    return {{end - start, field(run.get(), BRN_FIELD_PRESSURE), last.approach,
+             std::max({last.penetration, last.complementarity, last.tension, last.balance}), last.iterations,
+             last.convolutions}};
   }
 
  private:
   brn_engine* engine_;
   cli::Scene scene_;
-  cli::Run run_;
 };
 
+/// One solution passes all tolerances on its way.
 class OfTextbook final : public Candidate {
  public:
-  OfTextbook(brn_engine* engine, const cli::SceneFile& scene, std::shared_ptr<Textbook>& shared)
-      : modulus_(contact_modulus(scene)), tolerance_(scene.solver.tolerance) {
+  OfTextbook(brn_engine* engine, const cli::SceneFile& scene, std::vector<double> tolerances)
+      : modulus_(contact_modulus(scene)), tolerances_(std::move(tolerances)) {
     const cli::BuiltScene built = cli::build_scene(scene);
     const brn_grid& grid = built.grid;
     const double nodes = static_cast<double>(grid.nx * grid.ny);
@@ -99,36 +94,34 @@ class OfTextbook final : public Candidate {
     target_ = by_approach_         ? *step.approach
               : step.mean_pressure ? *step.mean_pressure * nodes / modulus_
                                    : *step.normal_force / (grid.dx * grid.dy * modulus_);
-    if (shared == nullptr) {
-      const cli::Run run = cli::make_run(engine, built.scene.get());
-      shared = std::make_shared<Textbook>(Grid{grid.nx, grid.ny, grid.dx, grid.dy}, Boundary{grid.boundary},
-                                          field(run.get(), BRN_FIELD_UNDEFORMED_GAP).data());
-    }
-    solver_ = shared;
+    const cli::Run run = cli::make_run(engine, built.scene.get());
+    solver_ = std::make_unique<Textbook>(Grid{grid.nx, grid.ny, grid.dx, grid.dy}, Boundary{grid.boundary},
+                                         field(run.get(), BRN_FIELD_UNDEFORMED_GAP).data());
   }
 
-  double turn() override {
-    const double start = seconds(Clock::cpu);
-    solution_ = solver_->solve(by_approach_ ? contact::Drive::approach : contact::Drive::force, target_, tolerance_,
-                               kTextbookIterations);
-    const double end = seconds(Clock::cpu);
-    pressure_ = solver_->pressure();
-    for (double& p : pressure_) p *= modulus_;
-    return end - start;
-  }
-
-  Result result() override {
-    return {pressure_, solution_.approach, solution_.certificate.worst(), solution_.iterations,
-            solution_.convolutions};
+  std::vector<Result> turn() override {
+    std::vector<Result> results;
+    double start = seconds(Clock::cpu);
+    const auto observe = [&](const TextbookSolution& state) {
+      const double now = seconds(Clock::cpu);
+      while (results.size() < tolerances_.size() && state.certificate.worst() <= tolerances_[results.size()]) {
+        results.push_back({now - start, solver_->pressure(), state.approach, state.certificate.worst(),
+                           state.iterations, state.convolutions});
+        for (double& p : results.back().pressure) p *= modulus_;
+      }
+      start += seconds(Clock::cpu) - now;
+    };
+    solver_->solve(by_approach_ ? contact::Drive::approach : contact::Drive::force, target_, tolerances_.back(),
+                   kTextbookIterations, observe);
+    return results;
   }
 
  private:
-  double modulus_, tolerance_;
+  double modulus_;
+  std::vector<double> tolerances_;  // falling
   bool by_approach_ = false;
   double target_ = 0;
-  std::shared_ptr<Textbook> solver_;
-  TextbookSolution solution_;
-  std::vector<double> pressure_;
+  std::unique_ptr<Textbook> solver_;
 };
 
 double relative_rms(const std::vector<double>& values, const std::vector<double>& reference) {
@@ -141,9 +134,7 @@ double relative_rms(const std::vector<double>& values, const std::vector<double>
 }
 
 Result solved_once(brn_engine* engine, const cli::SceneFile& scene) {
-  OfEngine candidate(engine, scene);
-  candidate.turn();
-  return candidate.result();
+  return OfEngine(engine, scene).turn().front();
 }
 
 /// A difference of a hundredth is none.
@@ -158,31 +149,46 @@ void mark_front(std::vector<SweepPoint>& points) {
   }
 }
 
+/// A candidate and its points, one for each of its tolerances.
+struct Entry {
+  std::unique_ptr<Candidate> candidate;
+  std::vector<SweepPoint> points;
+};
+
 /// Runs all candidates in turn, and fills in what a point says about its own.
-void measure(std::vector<SweepPoint>& points, const std::vector<std::unique_ptr<Candidate>>& candidates, int rounds,
-             const std::function<double(const SweepPoint&, const Result&)>& error) {
-  constexpr double kLongTime = 5;  // of a point: then its turns end
-  std::vector<std::vector<double>> times(points.size());
-  for (int round = 0; round < rounds; ++round) {
-    for (std::size_t k = 0; k < points.size(); ++k) {
-      if (round > 0 && times[k].front() * round > kLongTime) continue;
-      if (round == 0 && points[k].method != "textbook") candidates[k]->turn();  // fills the engine's caches
-      times[k].push_back(candidates[k]->turn());
-      if (round > 0) continue;
-      const Result result = candidates[k]->result();
-      points[k].error = error(points[k], result);
-      points[k].certificate = result.certificate;
-      points[k].iterations = result.iterations;
-      points[k].convolutions = result.convolutions;
+std::vector<SweepPoint> measured(std::vector<Entry>& entries, int rounds,
+                                 const std::function<double(const Result&)>& error) {
+  constexpr double kLongTime = 5;  // of a candidate: then its turns end
+  std::vector<SweepPoint> points;
+  std::vector<std::vector<std::vector<double>>> times(entries.size());  // of entry and point, one for each turn
+  for (int round = 0; round <= rounds; ++round) {                       // the first fills caches and gives the errors
+    for (std::size_t e = 0; e < entries.size(); ++e) {
+      Entry& entry = entries[e];
+      if (round > 1 && !times[e].empty() && times[e].back().front() * round > kLongTime) continue;
+      const std::vector<Result> results = entry.candidate->turn();
+      times[e].resize(results.size());
+      if (round == 0) entry.points.resize(results.size());
+      for (std::size_t k = 0; k < results.size(); ++k) {
+        SweepPoint& point = entry.points[k];
+        if (round > 0) {
+          times[e][k].push_back(results[k].seconds);
+          continue;
+        }
+        point.error = error(results[k]);
+        point.certificate = results[k].certificate;
+        point.iterations = results[k].iterations;
+        point.convolutions = results[k].convolutions;
+      }
     }
   }
-  for (std::size_t k = 0; k < points.size(); ++k) points[k].seconds = median(times[k]);
+  for (std::size_t e = 0; e < entries.size(); ++e) {
+    for (std::size_t k = 0; k < entries[e].points.size(); ++k) {
+      entries[e].points[k].seconds = median(times[e][k]);
+      points.push_back(entries[e].points[k]);
+    }
+  }
   mark_front(points);
-}
-
-const std::vector<std::string>& methods() {
-  static const std::vector<std::string> names{"textbook", "double", "mixed"};
-  return names;
+  return points;
 }
 
 }  // namespace
@@ -194,25 +200,26 @@ Sweep sweep_tolerances(const cli::SceneFile& whole, const SweepOptions& options)
   scene.solver.tolerance = kReferenceTolerance;
   const Result reference = solved_once(engine.get(), scene);
 
-  Sweep sweep{SweepKind::tolerance, "pressure (rms), against the solution to 1e-12", {}};
-  std::vector<std::unique_ptr<Candidate>> candidates;
-  std::shared_ptr<Textbook> textbook;
-  for (const std::string& method : methods()) {
-    if (method == "textbook" && grid.nx * grid.ny > options.textbook_nodes) continue;
-    for (int exponent = 2; exponent <= 10; ++exponent) {
-      scene.solver.tolerance = std::pow(10.0, -exponent);
-      scene.solver.mixed = method == "mixed";
-      sweep.points.push_back({method, grid.nx, grid.ny, scene.solver.tolerance});
-      if (method == "textbook") {
-        candidates.push_back(std::make_unique<OfTextbook>(engine.get(), scene, textbook));
-      } else {
-        candidates.push_back(std::make_unique<OfEngine>(engine.get(), scene));
-      }
+  std::vector<Entry> entries;
+  std::vector<double> tolerances;
+  std::vector<SweepPoint> of_textbook;
+  for (int exponent = 2; exponent <= 10; ++exponent) {
+    tolerances.push_back(std::pow(10.0, -exponent));
+    of_textbook.push_back({"textbook", grid.nx, grid.ny, tolerances.back()});
+  }
+  if (grid.nx * grid.ny <= options.textbook_nodes) {
+    entries.push_back({std::make_unique<OfTextbook>(engine.get(), scene, tolerances), of_textbook});
+  }
+  for (const char* method : {"double", "mixed"}) {
+    for (const double tolerance : tolerances) {
+      scene.solver.tolerance = tolerance;
+      scene.solver.mixed = method == std::string("mixed");
+      entries.push_back({std::make_unique<OfEngine>(engine.get(), scene), {{method, grid.nx, grid.ny, tolerance}}});
     }
   }
-  measure(sweep.points, candidates, options.rounds,
-          [&](const SweepPoint&, const Result& result) { return relative_rms(result.pressure, reference.pressure); });
-  return sweep;
+  return {SweepKind::tolerance, "pressure (rms), against the solution to 1e-12",
+          measured(entries, options.rounds,
+                   [&](const Result& result) { return relative_rms(result.pressure, reference.pressure); })};
 }
 
 std::optional<Sweep> sweep_grids(const cli::SceneFile& whole, const SweepOptions& options, std::int64_t coarsest,
@@ -246,24 +253,23 @@ std::optional<Sweep> sweep_grids(const cli::SceneFile& whole, const SweepOptions
     sweep.error_of = "approach, against twice the finest grid";
   }
 
-  std::vector<std::unique_ptr<Candidate>> candidates;
-  for (const std::string& method : methods()) {
+  std::vector<Entry> entries;
+  for (const char* method : {"textbook", "double", "mixed"}) {
     for (std::int64_t nx = coarsest; nx <= finest; nx *= 2) {
       cli::SceneFile sized = at(nx);
-      sized.solver.mixed = method == "mixed";
+      sized.solver.mixed = method == std::string("mixed");
       const auto ny = (*sized.grid.nodes)[1];
-      if (method == "textbook" && nx * ny > options.textbook_nodes) continue;
-      sweep.points.push_back({method, nx, ny, scene.solver.tolerance});
-      if (method == "textbook") {
-        std::shared_ptr<Textbook> textbook;
-        candidates.push_back(std::make_unique<OfTextbook>(engine.get(), sized, textbook));
-      } else {
-        candidates.push_back(std::make_unique<OfEngine>(engine.get(), sized));
+      const SweepPoint point{method, nx, ny, kGridTolerance};
+      if (method != std::string("textbook")) {
+        entries.push_back({std::make_unique<OfEngine>(engine.get(), sized), {point}});
+      } else if (nx * ny <= options.textbook_nodes) {
+        entries.push_back(
+            {std::make_unique<OfTextbook>(engine.get(), sized, std::vector<double>{kGridTolerance}), {point}});
       }
     }
   }
-  measure(sweep.points, candidates, options.rounds,
-          [&](const SweepPoint&, const Result& result) { return std::fabs(result.approach / reference - 1); });
+  sweep.points = measured(entries, options.rounds,
+                          [&](const Result& result) { return std::fabs(result.approach / reference - 1); });
   return sweep;
 }
 

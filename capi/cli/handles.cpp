@@ -38,4 +38,12 @@ brn_increment increment_of(brn_run* run, int index) {
   return increment;
 }
 
+std::vector<double> depths_of(brn_run* run) {
+  std::size_t count = 0;
+  check(brn_run_get_depths(run, nullptr, 0, &count), run);
+  std::vector<double> depths(count);
+  check(brn_run_get_depths(run, depths.data(), depths.size(), &count), run);
+  return depths;
+}
+
 }  // namespace brinell::cli

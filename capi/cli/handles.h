@@ -6,6 +6,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace brinell::cli {
 
@@ -48,5 +49,8 @@ Run load_run(brn_engine* engine, const brn_scene* scene, const std::string& stat
 std::string save_run(brn_run* run);
 
 brn_increment increment_of(brn_run* run, int index);
+
+/// Of the layers [m]; empty if the scene asks for nothing below the surface.
+std::vector<double> depths_of(brn_run* run);
 
 }  // namespace brinell::cli

@@ -1,5 +1,6 @@
 #include "scene_builder.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -71,6 +72,7 @@ class Builder {
     set_body(BRN_UPPER, file_.upper.same_as_lower ? file_.lower : file_.upper);
     for (std::size_t k = 0; k < file_.surfaces.size(); ++k) add_surface(file_.surfaces[k], k, grid);
     for (const auto& step : file_.steps) add_step(step);
+    set_subsurface();
     brn_solver solver;
     brn_solver_init(&solver);
     solver.tolerance = file_.solver.tolerance;
@@ -101,7 +103,6 @@ class Builder {
       if (step.eccentricity) fail(step.line, "[[step]]: eccentricity" + release);
       if (step.tilt) fail(step.line, "[[step]]: tilt" + release);
       if (step.offset) fail(step.line, "[[step]]: offset" + release);
-      if (step.traction_ratio) fail(step.line, "[[step]]: traction_ratio" + release);
     }
     for (const auto& field : file_.output.fields) {
       if (field_info(field).id != 0) continue;
@@ -214,8 +215,55 @@ class Builder {
     step.increments = part.increments;
     step.drive = part.normal_force ? BRN_DRIVE_FORCE : part.approach ? BRN_DRIVE_APPROACH : BRN_DRIVE_MEAN_PRESSURE;
     step.target = part.normal_force ? *part.normal_force : part.approach ? *part.approach : *part.mean_pressure;
+    if (part.traction_ratio) std::copy_n(part.traction_ratio->data(), 2, step.traction_ratio);
     accept(brn_scene_add_step(scene_.get(), &step), part.line,
            "[[step]] " + std::to_string(&part - file_.steps.data() + 1));
+  }
+
+  /// Layers are read only if [output] asks for something below the surface.
+  void set_subsurface() const {
+    brn_subsurface wanted;
+    brn_subsurface_init(&wanted);
+    std::vector<std::int32_t> fields;
+    std::string first;  // that asks
+    for (const auto& name : file_.output.fields) {
+      const FieldInfo info = field_info(name);
+      if (!info.is_below_surface()) continue;
+      fields.push_back(info.id);
+      if (first.empty()) first = "the field " + name;
+    }
+    for (const auto& name : file_.output.maxima) {
+      (name == "von_mises" ? wanted.max_von_mises : wanted.upper_max_von_mises) = 1;
+      if (first.empty()) first = "the largest " + name;
+    }
+    if (first.empty()) return;
+
+    const GridPart& grid = file_.grid;
+    if (grid.layer_depths.empty() && (grid.layers == 0 || grid.layer_thickness == 0)) {
+      const char* missing = grid.layers != 0            ? "layer_thickness is missing"
+                            : grid.layer_thickness != 0 ? "layers is missing"
+                                                        : "layers and layer_thickness, or layer_depths, are missing";
+      fail(grid.line, std::string("[grid]: ") + missing + ", which " + first + " of [output] needs");
+    }
+    refuse_rigid(wanted, fields);
+    wanted.layers = grid.layers;
+    wanted.layer_thickness = grid.layer_thickness;
+    wanted.depths = grid.layer_depths.data();
+    wanted.depth_count = grid.layer_depths.size();
+    wanted.fields = fields.data();
+    wanted.field_count = fields.size();
+    accept(brn_scene_set_subsurface(scene_.get(), &wanted), file_.output.line, "[output]");
+  }
+
+  void refuse_rigid(const brn_subsurface& wanted, const std::vector<std::int32_t>& fields) const {
+    bool lower = wanted.max_von_mises != 0;
+    bool upper = wanted.upper_max_von_mises != 0;
+    for (const std::int32_t field : fields) (field < BRN_FIELD_UPPER_STRESS ? lower : upper) = true;
+    const std::string reason = " body's stress is asked for, but that body is rigid; expected ";
+    if (lower && file_.lower.rigid) {
+      fail(file_.output.line, "[output]: the lower" + reason + "the upper body's, with the prefix upper_");
+    }
+    if (upper && file_.upper.rigid) fail(file_.output.line, "[output]: the upper" + reason + "the lower body's");
   }
 
   const SceneFile& file_;
@@ -234,6 +282,13 @@ FieldInfo field_info(const std::string& name) {
   if (name == "gap") return {BRN_FIELD_GAP, "m"};
   if (name == "displacement") return {BRN_FIELD_DISPLACEMENT, "m"};
   if (name == "undeformed_gap") return {BRN_FIELD_UNDEFORMED_GAP, "m"};
+  const bool is_upper = name.starts_with("upper_");
+  const std::string of_body = is_upper ? name.substr(6) : name;
+  constexpr const char* kStresses[] = {"stress",      "von_mises",   "tresca",     "hydrostatic",
+                                       "principal_1", "principal_2", "principal_3"};
+  for (int k = 0; k < 7; ++k) {
+    if (of_body == kStresses[k]) return {(is_upper ? BRN_FIELD_UPPER_STRESS : BRN_FIELD_STRESS) + k, "Pa"};
+  }
   return {0, ""};
 }
 

@@ -15,10 +15,13 @@ struct BuiltScene {
 /// refuses or that does not fit.
 BuiltScene build_scene(const SceneFile& file);
 
-/// Identifier of a field of [output], BRN_FIELD_..., its unit; 0 if this release does not compute it.
+/// Identifier of a field of [output], BRN_FIELD_..., and its unit; 0 if this release does not compute it.
 struct FieldInfo {
   int id;
   const char* unit;
+
+  bool is_below_surface() const { return id >= BRN_FIELD_STRESS; }
+  bool is_tensor() const { return id == BRN_FIELD_STRESS || id == BRN_FIELD_UPPER_STRESS; }
 };
 FieldInfo field_info(const std::string& name);
 

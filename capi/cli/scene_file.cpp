@@ -230,15 +230,33 @@ SolverPart read_solver(TomlTable& table) {
 }
 
 OutputPart read_output(TomlTable& table) {
-  static const std::vector<std::string> kFields{"pressure",        "gap",
-                                                "displacement",    "undeformed_gap",
-                                                "stress",          "von_mises",
-                                                "plastic_strain",  "equivalent_plastic_strain",
-                                                "residual_stress", "residual_displacement"};
+  static const std::vector<std::string> kFields{"pressure",
+                                                "gap",
+                                                "displacement",
+                                                "undeformed_gap",
+                                                "stress",
+                                                "von_mises",
+                                                "tresca",
+                                                "hydrostatic",
+                                                "principal_1",
+                                                "principal_2",
+                                                "principal_3",
+                                                "upper_stress",
+                                                "upper_von_mises",
+                                                "upper_tresca",
+                                                "upper_hydrostatic",
+                                                "upper_principal_1",
+                                                "upper_principal_2",
+                                                "upper_principal_3",
+                                                "plastic_strain",
+                                                "equivalent_plastic_strain",
+                                                "residual_stress",
+                                                "residual_displacement"};
   OutputPart output;
   output.line = table.line();
   const auto fields = table.texts("fields", kFields);
   if (table.has("fields")) output.fields = fields;
+  output.maxima = table.texts("maxima", {"von_mises", "upper_von_mises"});
   const std::string increments = table.choice("increments", {"last", "all", "steps"}).value_or("last");
   output.increments = increments == "all"     ? StoredIncrements::all
                       : increments == "steps" ? StoredIncrements::steps

@@ -77,6 +77,7 @@ enum class StoredIncrements { last, all, steps };
 struct OutputPart {
   int line = 0;
   std::vector<std::string> fields{"pressure", "gap", "displacement"};
+  std::vector<std::string> maxima;  ///< von_mises, upper_von_mises: in the summary, without a field
   StoredIncrements increments = StoredIncrements::last;
 };
 

@@ -32,7 +32,8 @@ class Solve {
     const auto& output = parts.file.output;
     if (output.fields.empty()) return;
     const bool keeps_earlier = parts.resumed && output.increments != StoredIncrements::last;
-    fields_.emplace(parts.folder.path(), FieldsGrid{parts.grid.nx, parts.grid.ny, parts.grid.dx, parts.grid.dy, {}},
+    fields_.emplace(parts.folder.path(),
+                    FieldsGrid{parts.grid.nx, parts.grid.ny, parts.grid.dx, parts.grid.dy, depths_of(parts.run)},
                     keeps_earlier);
   }
 
@@ -50,8 +51,12 @@ class Solve {
   int solved() const { return brn_run_solved_increments(parts_.run); }
   int total() const { return brn_run_total_increments(parts_.run); }
 
+  bool is_finished() const {
+    return solved() == total() && increment_of(parts_.run, solved() - 1).stress_missing == 0;
+  }
+
   brn_status advance_to_end() {
-    while (solved() < total()) {
+    while (!is_finished()) {
       if (interrupted()) return BRN_CANCELLED;
       const brn_status status = brn_run_advance(parts_.run, follow_progress, &progress_);
       if (status != BRN_OK && status != BRN_NOT_CONVERGED) return status;
@@ -72,12 +77,18 @@ class Solve {
   void store(const brn_increment& increment) {
     if (!fields_) return;
     fields_->begin_increment(increment.step, increment.increment);
-    std::vector<double> values(static_cast<std::size_t>(parts_.grid.nx * parts_.grid.ny));
+    std::vector<double> values;
     for (const auto& name : parts_.file.output.fields) {
       const FieldInfo info = field_info(name);
+      if (info.is_below_surface() && increment.stress_missing != 0) continue;
       std::size_t count = 0;
+      check(brn_run_get_field(parts_.run, info.id, nullptr, 0, &count), parts_.run);
+      values.resize(count);
       check(brn_run_get_field(parts_.run, info.id, values.data(), values.size(), &count), parts_.run);
-      fields_->add({name}, info.unit, values);
+      const FieldKind kind = info.is_tensor()          ? FieldKind::tensor
+                             : info.is_below_surface() ? FieldKind::scalar
+                                                       : FieldKind::surface;
+      fields_->add({name, kind}, info.unit, values);
     }
   }
 

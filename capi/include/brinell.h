@@ -1,11 +1,12 @@
 /* brinell: semi-analytical contact mechanics of real surfaces.
  *
  * Press two bodies together, given the gap between them, their materials and a history of loads; get pressure,
- * contact area, approach and displacement, each with a certificate of its error.
+ * contact area, approach and displacement, each with a certificate of its error, and the stress below the surface.
  *
  *   brn_engine  threads, caches and instruction set; one per program is enough, shared by all runs
  *   brn_scene   a description: grid, bodies, surfaces, load history, solver
  *   brn_run     a scene planned on an engine, advanced increment by increment and asked for results
+ *   brn_stress_compute  the stress below tractions that the caller already has, without scene and run
  *
  *   brn_engine *engine; brn_scene *scene; brn_run *run;
  *   brn_engine_create(NULL, &engine);
@@ -304,9 +305,11 @@ enum { BRN_DRIVE_FORCE = 1, BRN_DRIVE_APPROACH = 2, BRN_DRIVE_MEAN_PRESSURE = 3 
  * zero force, or from the approach min(0, first touch). */
 typedef struct brn_step {
   size_t struct_size;
-  int32_t drive;      /* BRN_DRIVE_...: mean pressure on periodic grids only */
-  int32_t increments; /* >= 1 */
-  double target;      /* N >= 0, m, or Pa >= 0 */
+  int32_t drive;            /* BRN_DRIVE_...: mean pressure on periodic grids only */
+  int32_t increments;       /* >= 1 */
+  double target;            /* N >= 0, m, or Pa >= 0 */
+  double traction_ratio[2]; /* full sliding: shear along x and y on the lower body, as multiples of the pressure; the
+                               upper body gets the opposite. Enters the stress below the surface alone */
 } brn_step;
 
 static inline void brn_step_init(brn_step *value) {
@@ -314,6 +317,8 @@ static inline void brn_step_init(brn_step *value) {
   value->drive = 0;
   value->increments = 1;
   value->target = 0.0;
+  value->traction_ratio[0] = 0.0;
+  value->traction_ratio[1] = 0.0;
 }
 BRN_API brn_status brn_scene_add_step(brn_scene *scene, const brn_step *step);
 
@@ -334,6 +339,38 @@ static inline void brn_solver_init(brn_solver *value) {
 }
 BRN_API brn_status brn_scene_set_solver(brn_scene *scene, const brn_solver *solver);
 
+/* What is wanted of the stress below the surfaces; without it none is computed. Each body has its own frame: x and y
+ * are the grid's, z is zero at its surface and points into it. In the upper body's frame xz and yz stresses have the
+ * opposite sign of what they have in the lower body's axes. */
+typedef struct brn_subsurface {
+  size_t struct_size;
+  int64_t layers;         /* equal layers, at the depths (k + 1/2) * layer_thickness, k = 0 ... layers-1; */
+  double layer_thickness; /* [m] > 0 */
+  const double *depths;   /* or, with layers = 0, these depths [m]: rising, zero is the surface itself */
+  size_t depth_count;
+  const int32_t *fields; /* BRN_FIELD_STRESS and those after it, which the run then holds for its last increment */
+  size_t field_count;
+  int32_t max_von_mises;       /* 0 or 1: the largest von Mises stress and its place, which need no field. Fields of
+                                  the stress or the von Mises stress bring them along */
+  int32_t upper_max_von_mises; /* 0 or 1: the same of the upper body */
+} brn_subsurface;
+
+static inline void brn_subsurface_init(brn_subsurface *value) {
+  value->struct_size = sizeof *value;
+  value->layers = 0;
+  value->layer_thickness = 0.0;
+  value->depths = NULL;
+  value->depth_count = 0;
+  value->fields = NULL;
+  value->field_count = 0;
+  value->max_von_mises = 0;
+  value->upper_max_von_mises = 0;
+}
+
+/* Copies depths and fields; the last call holds. A rigid body has no stress: asking for it makes the scene
+ * BRN_INVALID_SCENE for a run. */
+BRN_API brn_status brn_scene_set_subsurface(brn_scene *scene, const brn_subsurface *subsurface);
+
 /* ---------------------------------------------------------------- run */
 
 typedef struct brn_run brn_run;
@@ -347,7 +384,7 @@ BRN_API const char *brn_run_message(const brn_run *run);
 /* One line of the plan: a stage, what it holds or carries out, and the bytes that takes. */
 typedef struct brn_plan_item {
   size_t struct_size;
-  const char *stage; /* "surface", "contact", ...; lives as long as the run */
+  const char *stage; /* "surface", "contact", "stress"; lives as long as the run */
   const char *what;
   uint64_t bytes;
 } brn_plan_item;
@@ -380,10 +417,12 @@ typedef struct brn_progress {
 typedef int32_t (*brn_progress_callback)(const brn_progress *progress, void *user);
 
 /* Solves the next increment. BRN_NOT_CONVERGED: its result is kept and marked, and the run may go on.
- * BRN_WRONG_STATE: there is no further increment. callback may be NULL. */
+ * BRN_WRONG_STATE: there is no further increment. callback may be NULL. An increment whose contact is solved stays
+ * solved when its stress is then cancelled or fails: it is marked stress_missing, and the next call computes the
+ * stress before anything else and returns. */
 BRN_API brn_status brn_run_advance(brn_run *run, brn_progress_callback callback, void *user);
 
-/* Solves all remaining increments; stops at the first that does not end in BRN_OK. */
+/* Solves all remaining increments, and a stress that is missing; stops at the first that does not end in BRN_OK. */
 BRN_API brn_status brn_run_execute(brn_run *run, brn_progress_callback callback, void *user);
 
 BRN_API int32_t brn_run_total_increments(const brn_run *run);
@@ -414,6 +453,12 @@ typedef struct brn_increment {
   double tension;         /* largest tensile / largest compressive pressure */
   double balance;         /* |force - prescribed force| / prescribed force; 0 if approach is prescribed */
   double wall_seconds;
+  /* Largest von Mises stress [Pa] and its x, y, z [m] in the body's own frame, both interpolated between nodes and
+     depths: */
+  double max_von_mises, max_von_mises_at[3];
+  double upper_max_von_mises, upper_max_von_mises_at[3];
+  int32_t stress_missing; /* 0; 1: its stress was cancelled or failed, and the next brn_run_advance computes it */
+  int32_t reserved2;
 } brn_increment;
 
 static inline void brn_increment_init(brn_increment *value) {
@@ -442,6 +487,16 @@ static inline void brn_increment_init(brn_increment *value) {
   value->tension = 0.0;
   value->balance = 0.0;
   value->wall_seconds = 0.0;
+  value->max_von_mises = 0.0;
+  value->max_von_mises_at[0] = 0.0;
+  value->max_von_mises_at[1] = 0.0;
+  value->max_von_mises_at[2] = 0.0;
+  value->upper_max_von_mises = 0.0;
+  value->upper_max_von_mises_at[0] = 0.0;
+  value->upper_max_von_mises_at[1] = 0.0;
+  value->upper_max_von_mises_at[2] = 0.0;
+  value->stress_missing = 0;
+  value->reserved2 = 0;
 }
 BRN_API brn_status brn_run_get_increment(brn_run *run, int32_t index, brn_increment *out);
 
@@ -476,15 +531,41 @@ BRN_API const char *brn_run_stage_name(const brn_run *run, int32_t index);
 BRN_API double brn_run_stage_seconds(const brn_run *run, int32_t index);
 
 enum {
-  BRN_FIELD_PRESSURE = 1,      /* [Pa] */
-  BRN_FIELD_GAP = 2,           /* of the deformed surfaces [m] */
-  BRN_FIELD_DISPLACEMENT = 3,  /* normal, of both bodies together [m] */
-  BRN_FIELD_UNDEFORMED_GAP = 4 /* [m]; known before the first increment */
+  BRN_FIELD_PRESSURE = 1,       /* [Pa] */
+  BRN_FIELD_GAP = 2,            /* of the deformed surfaces [m] */
+  BRN_FIELD_DISPLACEMENT = 3,   /* normal, of both bodies together [m] */
+  BRN_FIELD_UNDEFORMED_GAP = 4, /* [m]; known before the first increment */
+  /* Below the lower body's surface [Pa], tension positive; only those that brn_subsurface.fields names: */
+  BRN_FIELD_STRESS = 20, /* xx yy zz yz xz xy of each node, side by side */
+  BRN_FIELD_VON_MISES = 21,
+  BRN_FIELD_TRESCA = 22,      /* the largest principal stress less the smallest */
+  BRN_FIELD_HYDROSTATIC = 23, /* mean of the normal stresses, negative under pressure */
+  BRN_FIELD_PRINCIPAL_1 = 24, /* the largest */
+  BRN_FIELD_PRINCIPAL_2 = 25,
+  BRN_FIELD_PRINCIPAL_3 = 26,
+  /* Below the upper body's surface: */
+  BRN_FIELD_UPPER_STRESS = 120,
+  BRN_FIELD_UPPER_VON_MISES = 121,
+  BRN_FIELD_UPPER_TRESCA = 122,
+  BRN_FIELD_UPPER_HYDROSTATIC = 123,
+  BRN_FIELD_UPPER_PRINCIPAL_1 = 124,
+  BRN_FIELD_UPPER_PRINCIPAL_2 = 125,
+  BRN_FIELD_UPPER_PRINCIPAL_3 = 126
 };
 
-/* Copies a field of the last solved increment, nx*ny doubles. *count receives the number needed; values may be NULL
- * if capacity is 0 (that returns BRN_OK: a query of the size). */
+/* Copies a field of the last solved increment: nx*ny doubles on the surface; below it layers*ny*nx, element
+ * (layer*ny + j)*nx + i, each of the stress six numbers. *count receives the number needed; values may be NULL if
+ * capacity is 0 (that returns BRN_OK: a query of the size). A run that was loaded, or whose stress is missing,
+ * computes it here. BRN_WRONG_STATE: the scene does not ask for this field. */
 BRN_API brn_status brn_run_get_field(brn_run *run, int32_t field, double *values, size_t capacity, size_t *count);
+
+/* The same for one layer of a field below the surface, counted from the uppermost: nx*ny doubles, six times as many
+ * of the stress. */
+BRN_API brn_status brn_run_get_layer(brn_run *run, int32_t field, int64_t layer, double *values, size_t capacity,
+                                     size_t *count);
+
+/* Depths of the layers [m]; none if the scene asks for no stress. Sizes as in brn_run_get_field. */
+BRN_API brn_status brn_run_get_depths(brn_run *run, double *depths, size_t capacity, size_t *count);
 
 /* Writes the run's state (all solved increments, and what the next ones start from) to the caller's memory. *size
  * receives the bytes needed; buffer may be NULL if capacity is 0 (a query of the size). */
@@ -514,6 +595,101 @@ BRN_API int32_t brn_benchmark_calibration(int32_t index);
 /* Carries one out on the engine, once to warm up and then for some ten milliseconds. *seconds receives what one turn
  * took: processor time of the calling thread if the engine has one thread, else wall time. */
 BRN_API brn_status brn_benchmark_run(brn_engine *engine, int32_t index, double *seconds);
+
+/* ---------------------------------------------------------------- stress */
+
+/* Tractions that the caller already has, on a grid of its own: the stress below them needs no scene and no run. */
+typedef struct brn_stress_request {
+  size_t struct_size;
+  int64_t nx, ny;        /* nodes, >= 1 */
+  double dx, dy;         /* spacing [m], > 0 */
+  int32_t boundary;      /* BRN_BOUNDARY_... */
+  int32_t body;          /* BRN_LOWER or BRN_UPPER: whose frame, and who gets the shears with the opposite sign */
+  double poissons_ratio; /* -1 < nu < 0.5 */
+  const double *depths;  /* [m] rising, zero is the surface; at least one */
+  size_t depth_count;
+  const double *pressure; /* nx*ny doubles each [Pa]; NULL: none of this kind, but one is needed. Pressure presses, */
+  const double *shear_x;  /* a shear > 0 pushes the lower body's surface along +x */
+  const double *shear_y;  /* or +y */
+} brn_stress_request;
+
+static inline void brn_stress_request_init(brn_stress_request *value) {
+  value->struct_size = sizeof *value;
+  value->nx = 0;
+  value->ny = 0;
+  value->dx = 0.0;
+  value->dy = 0.0;
+  value->boundary = 0;
+  value->body = 0;
+  value->poissons_ratio = 0.0;
+  value->depths = NULL;
+  value->depth_count = 0;
+  value->pressure = NULL;
+  value->shear_x = NULL;
+  value->shear_y = NULL;
+}
+
+enum { BRN_XX = 0, BRN_YY = 1, BRN_ZZ = 2, BRN_YZ = 3, BRN_XZ = 4, BRN_XY = 5 };
+
+/* Where results go: NULL is neither wanted nor computed. Each array has depth_count*ny*nx doubles, element
+ * (layer*ny + j)*nx + i, in Pa with tension positive. */
+typedef struct brn_stress_fields {
+  size_t struct_size;
+  size_t capacity;      /* doubles in each array that is not NULL */
+  double *component[6]; /* BRN_XX ... BRN_XY */
+  double *von_mises;
+  double *tresca;       /* the largest principal stress less the smallest */
+  double *hydrostatic;  /* mean of the normal stresses */
+  double *principal[3]; /* falling */
+  double
+      *direction[9]; /* [3*k + axis] of principal stress k: unit vectors, their signs without meaning; all or none */
+} brn_stress_fields;
+
+static inline void brn_stress_fields_init(brn_stress_fields *value) {
+  int k;
+  value->struct_size = sizeof *value;
+  value->capacity = 0;
+  for (k = 0; k < 6; ++k) value->component[k] = NULL;
+  value->von_mises = NULL;
+  value->tresca = NULL;
+  value->hydrostatic = NULL;
+  for (k = 0; k < 3; ++k) value->principal[k] = NULL;
+  for (k = 0; k < 9; ++k) value->direction[k] = NULL;
+}
+
+/* Largest values [Pa] and their x, y, z [m], interpolated between nodes and depths. NaN: not wanted. */
+typedef struct brn_stress_maxima {
+  size_t struct_size;
+  int32_t wants_von_mises; /* 0 or 1: what is looked for; default: the von Mises stress alone */
+  int32_t wants_tresca;
+  int32_t wants_principal_1;
+  int32_t reserved;
+  double von_mises, von_mises_at[3];
+  double tresca, tresca_at[3];
+  double principal_1, principal_1_at[3];
+} brn_stress_maxima;
+
+static inline void brn_stress_maxima_init(brn_stress_maxima *value) {
+  int k;
+  value->struct_size = sizeof *value;
+  value->wants_von_mises = 1;
+  value->wants_tresca = 0;
+  value->wants_principal_1 = 0;
+  value->reserved = 0;
+  value->von_mises = 0.0;
+  value->tresca = 0.0;
+  value->principal_1 = 0.0;
+  for (k = 0; k < 3; ++k) {
+    value->von_mises_at[k] = 0.0;
+    value->tresca_at[k] = 0.0;
+    value->principal_1_at[k] = 0.0;
+  }
+}
+
+/* Computes what fields have room for and what maxima want; either may be NULL. maxima alone stores no field.
+ * BRN_TOO_LARGE: the engine's memory_limit does not allow the work, the caller's fields not counted. */
+BRN_API brn_status brn_stress_compute(brn_engine *engine, const brn_stress_request *request,
+                                      const brn_stress_fields *fields, brn_stress_maxima *maxima);
 
 #ifdef __cplusplus
 }

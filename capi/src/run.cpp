@@ -1,5 +1,6 @@
 #include <brinell.h>
 
+#include <algorithm>
 #include <cstring>
 #include <functional>
 #include <string>
@@ -44,6 +45,35 @@ void advance(scene::Run& run, brn_progress_callback callback, void* user) {
                                     text(increment.certificate.worst()) + "; the tolerance is " +
                                     text(run.tolerance()));
   }
+}
+
+bool has_stage(const brn_run* run, int32_t index) {
+  return run != nullptr && index >= 0 && index < scene::kStages &&
+         run->run->has_stage(static_cast<scene::Stage>(index));
+}
+
+scene::Field checked_field(int32_t field) {
+  const auto known = scene::field_of(field);
+  if (!known) {
+    fail(Status::invalid_argument,
+         "field = " + std::to_string(field) +
+             ": allowed are 1 (pressure) to 4 (undeformed_gap), 20 (stress) to 26 (principal_3) and 120 "
+             "(upper_stress) to 126 (upper_principal_3)");
+  }
+  return *known;
+}
+
+/// Tells the number needed; false if that was all the caller wanted to know. A short buffer is refused.
+bool has_room(std::size_t needed, const char* name, const double* values, size_t capacity, size_t* count) {
+  require(count, "count");
+  *count = needed;
+  if (capacity == 0) return false;
+  require(values, name);
+  if (capacity < needed) {
+    fail(Status::short_buffer,
+         std::string(name) + " hold " + std::to_string(capacity) + " doubles; needed are " + std::to_string(needed));
+  }
+  return true;
 }
 
 }  // namespace
@@ -99,7 +129,7 @@ brn_status brn_run_advance(brn_run* run, brn_progress_callback callback, void* u
 
 brn_status brn_run_execute(brn_run* run, brn_progress_callback callback, void* user) {
   return guarded_use(run, "run", [&] {
-    while (brn_run_solved_increments(run) < run->run->total()) advance(*run->run, callback, user);
+    while (!run->run->is_finished()) advance(*run->run, callback, user);
   });
 }
 
@@ -139,13 +169,20 @@ brn_status brn_run_get_increment(brn_run* run, int32_t index, brn_increment* out
     result.tension = i.certificate.tension;
     result.balance = i.certificate.balance;
     result.wall_seconds = i.wall_seconds;
+    result.max_von_mises = i.max_von_mises[BRN_LOWER].value;
+    std::copy_n(i.max_von_mises[BRN_LOWER].at, 3, result.max_von_mises_at);
+    result.upper_max_von_mises = i.max_von_mises[BRN_UPPER].value;
+    std::copy_n(i.max_von_mises[BRN_UPPER].at, 3, result.upper_max_von_mises_at);
+    result.stress_missing = i.stress_missing ? 1 : 0;
     write(result, out, &brn_increment::step, &brn_increment::increment, &brn_increment::converged,
           &brn_increment::iterations, &brn_increment::convolutions, &brn_increment::contact_nodes,
           &brn_increment::normal_force, &brn_increment::approach, &brn_increment::tilt,
           &brn_increment::centre_of_force, &brn_increment::first_touch, &brn_increment::contact_area,
           &brn_increment::max_pressure, &brn_increment::max_pressure_at, &brn_increment::mean_gap,
           &brn_increment::penetration, &brn_increment::complementarity, &brn_increment::tension,
-          &brn_increment::balance, &brn_increment::wall_seconds);
+          &brn_increment::balance, &brn_increment::wall_seconds, &brn_increment::max_von_mises,
+          &brn_increment::max_von_mises_at, &brn_increment::upper_max_von_mises,
+          &brn_increment::upper_max_von_mises_at, &brn_increment::stress_missing, &brn_increment::reserved2);
   });
 }
 
@@ -175,30 +212,44 @@ brn_status brn_run_get_trace_point(brn_run* run, int64_t index, brn_trace_point*
 }
 
 const char* brn_run_stage_name(const brn_run* run, int32_t index) {
-  if (run == nullptr || index < 0 || index >= scene::kStages) return nullptr;
-  return scene::name(static_cast<scene::Stage>(index));
+  return has_stage(run, index) ? scene::name(static_cast<scene::Stage>(index)) : nullptr;
 }
 
 double brn_run_stage_seconds(const brn_run* run, int32_t index) {
-  if (run == nullptr || index < 0 || index >= scene::kStages) return 0;
-  return run->run->stage_seconds(static_cast<scene::Stage>(index));
+  return has_stage(run, index) ? run->run->stage_seconds(static_cast<scene::Stage>(index)) : 0;
 }
 
 brn_status brn_run_get_field(brn_run* run, int32_t field, double* values, size_t capacity, size_t* count) {
   return guarded_use(run, "run", [&] {
-    require(count, "count");
-    if (field < BRN_FIELD_PRESSURE || field > BRN_FIELD_UNDEFORMED_GAP) {
-      fail(Status::invalid_argument, "field = " + std::to_string(field) + ": allowed are 1 (pressure) to " +
-                                         std::to_string(BRN_FIELD_UNDEFORMED_GAP) + " (undeformed gap)");
+    const scene::Field checked = checked_field(field);
+    if (!has_room(run->run->field_size(checked), "values", values, capacity, count)) return;
+    run->run->copy_field(checked, {values, *count});
+  });
+}
+
+brn_status brn_run_get_layer(brn_run* run, int32_t field, int64_t layer, double* values, size_t capacity,
+                             size_t* count) {
+  return guarded_use(run, "run", [&] {
+    const scene::Field checked = checked_field(field);
+    if (!scene::is_below_surface(checked)) {
+      fail(Status::invalid_argument, "field = " + std::to_string(field) + " (" + scene::name(checked) +
+                                         "): lies on the surface and has no layers; allowed are fields below it");
     }
-    *count = run->run->field_size();
-    if (capacity == 0) return;
-    require(values, "values");
-    if (capacity < *count) {
-      fail(Status::short_buffer,
-           "values hold " + std::to_string(capacity) + " doubles; needed are " + std::to_string(*count));
+    const std::size_t size = run->run->field_size(checked);
+    const auto layers = static_cast<int64_t>(run->run->depths().size());
+    if (layer < 0 || layer >= layers) {
+      fail(Status::invalid_argument,
+           "layer = " + std::to_string(layer) + ": allowed are 0 to " + std::to_string(layers - 1));
     }
-    run->run->copy_field(static_cast<scene::Field>(field), {values, *count});
+    if (!has_room(size / static_cast<std::size_t>(layers), "values", values, capacity, count)) return;
+    run->run->copy_layer(checked, layer, {values, *count});
+  });
+}
+
+brn_status brn_run_get_depths(brn_run* run, double* depths, size_t capacity, size_t* count) {
+  return guarded_use(run, "run", [&] {
+    const std::vector<double>& all = run->run->depths();
+    if (has_room(all.size(), "depths", depths, capacity, count)) std::copy(all.begin(), all.end(), depths);
   });
 }
 

@@ -1,9 +1,11 @@
 #include <brinell.h>
 
+#include <algorithm>
 #include <string>
 
 #include "handles.h"
 #include "structs.h"
+#include "subsurface/depths.h"
 #include "surface/statistics.h"
 
 using namespace brinell;
@@ -50,6 +52,19 @@ CheckedHeights to_heights(const brn_heights* heights) {
   if (h.stride_x != 0) map.stride_x = h.stride_x;
   if (h.stride_y != 0) map.stride_y = h.stride_y;
   return {map, checked_enum<surface::Detrend>(h.detrend, BRN_DETREND_PLANE, "detrend")};
+}
+
+std::vector<double> to_depths(const brn_subsurface& s) {
+  if (s.layers == 0) {
+    if (s.depth_count == 0) fail(Status::invalid_argument, "there are no depths: give layers, or depth_count");
+    require(s.depths, "depths");
+    return {s.depths, s.depths + s.depth_count};
+  }
+  if (s.depth_count != 0) {
+    fail(Status::invalid_argument, "layers = " + std::to_string(s.layers) + " and depth_count = " +
+                                       std::to_string(s.depth_count) + ": give one of them, leave the other zero");
+  }
+  return subsurface::layer_depths(s.layers, s.layer_thickness);
 }
 
 }  // namespace
@@ -141,9 +156,15 @@ brn_status brn_height_statistics(const brn_heights* heights, double dx, double d
 
 brn_status brn_scene_add_step(brn_scene* scene, const brn_step* step) {
   return guarded_use(scene, "scene", [&] {
-    const auto s = read(step, "step", brn_step_init, &brn_step::drive, &brn_step::increments, &brn_step::target);
-    scene->scene.add(scene::Step{checked_enum<scene::StepDrive>(s.drive, BRN_DRIVE_MEAN_PRESSURE, "drive"),
-                                 s.increments, s.target});
+    const auto s = read(step, "step", brn_step_init, &brn_step::drive, &brn_step::increments, &brn_step::target,
+                        &brn_step::traction_ratio);
+    scene::Step checked;
+    checked.drive = checked_enum<scene::StepDrive>(s.drive, BRN_DRIVE_MEAN_PRESSURE, "drive");
+    checked.increments = s.increments;
+    checked.target = s.target;
+    checked.traction_ratio[0] = s.traction_ratio[0];
+    checked.traction_ratio[1] = s.traction_ratio[1];
+    scene->scene.add(checked);
   });
 }
 
@@ -153,6 +174,32 @@ brn_status brn_scene_set_solver(brn_scene* scene, const brn_solver* solver) {
                         &brn_solver::precision);
     const int32_t precision = checked_enum<int32_t>(s.precision, BRN_PRECISION_MIXED, "precision");
     scene->scene.set_solver({s.tolerance, s.max_iterations, precision == BRN_PRECISION_MIXED});
+  });
+}
+
+brn_status brn_scene_set_subsurface(brn_scene* scene, const brn_subsurface* subsurface) {
+  return guarded_use(scene, "scene", [&] {
+    const auto s =
+        read(subsurface, "subsurface", brn_subsurface_init, &brn_subsurface::layers, &brn_subsurface::layer_thickness,
+             &brn_subsurface::depths, &brn_subsurface::depth_count, &brn_subsurface::fields,
+             &brn_subsurface::field_count, &brn_subsurface::max_von_mises, &brn_subsurface::upper_max_von_mises);
+    scene::Subsurface wanted;
+    wanted.depths = to_depths(s);
+    if (s.field_count > 0) require(s.fields, "fields");
+    for (std::size_t k = 0; k < s.field_count; ++k) {
+      const auto field = scene::field_of(s.fields[k]);
+      if (!field || !scene::is_below_surface(*field)) {
+        fail(Status::invalid_argument,
+             "fields[" + std::to_string(k) + "] = " + std::to_string(s.fields[k]) +
+                 ": allowed are 20 (stress) to 26 (principal_3), 120 (upper_stress) to 126 (upper_principal_3)");
+      }
+      if (std::find(wanted.fields.begin(), wanted.fields.end(), *field) == wanted.fields.end()) {
+        wanted.fields.push_back(*field);
+      }
+    }
+    wanted.max_von_mises[BRN_LOWER] = checked_enum<int32_t>(s.max_von_mises, 1, "max_von_mises") != 0;
+    wanted.max_von_mises[BRN_UPPER] = checked_enum<int32_t>(s.upper_max_von_mises, 1, "upper_max_von_mises") != 0;
+    scene->scene.set_subsurface(wanted);
   });
 }
 }

@@ -66,7 +66,8 @@ struct Convolution<Real>::Implementation {
   /// A kernel's quarter transformed as sources are.
   Spectrum<Real> transformed_kernel(const Real* kernel, Parity parity_x, Parity parity_y,
                                     Workspace<Real>& workspace) const {
-    auto quarter = Buffer<Real>::uninitialised(static_cast<std::size_t>(nx * ny));
+    Buffer<Real>& quarter = workspace.kernel;
+    if (quarter.empty()) quarter = Buffer<Real>::uninitialised(static_cast<std::size_t>(nx * ny));
     std::copy_n(kernel, quarter.size(), quarter.data());
     for (std::int64_t i = 0; parity_y == Parity::even && i < nx; ++i) quarter[static_cast<std::size_t>(i)] /= 2;
     for (std::int64_t j = 0; parity_x == Parity::even && j < ny; ++j) quarter[static_cast<std::size_t>(j * nx)] /= 2;

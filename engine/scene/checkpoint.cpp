@@ -13,7 +13,7 @@ namespace brinell::scene {
 namespace {
 
 constexpr char kMagic[8] = {'B', 'R', 'N', 'R', 'U', 'N', '\0', '\0'};
-constexpr std::uint32_t kVersion = 1;  // of the layout below
+constexpr std::uint32_t kVersion = 2;  // of the layout below
 constexpr std::uint32_t kByteOrder = 0x01020304;
 
 [[noreturn]] void damaged(const std::string& why) {
@@ -28,8 +28,9 @@ class Writer {
     put_bytes(&value, sizeof value);
   }
   void put_bytes(const void* data, std::size_t size) {
-    const auto* begin = static_cast<const std::byte*>(data);
-    bytes.insert(bytes.end(), begin, begin + size);
+    const std::size_t before = bytes.size();
+    bytes.resize(before + size);
+    std::memcpy(bytes.data() + before, data, size);
   }
   std::vector<std::byte> bytes;
 };
@@ -70,6 +71,11 @@ void members(I& increment, const Visit& visit) {
   visit(increment.max_pressure);
   for (auto& value : increment.max_pressure_at) visit(value);
   visit(increment.mean_gap);
+  for (auto& largest : increment.max_von_mises) {
+    visit(largest.value);
+    for (auto& value : largest.at) visit(value);
+  }
+  visit(increment.stress_missing);
   visit(increment.certificate.penetration);
   visit(increment.certificate.complementarity);
   visit(increment.certificate.tension);

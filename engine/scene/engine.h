@@ -30,6 +30,7 @@ class Engine {
   const simd::KernelTable& kernels() const { return kernels_; }
   contact::Resources resources() { return {{arena_, kernels_, plans_}, spectra_}; }
   std::uint64_t memory_limit() const { return memory_limit_; }
+  std::uint64_t cache_limit() const { return spectra_.byte_limit(); }
 
   /// Plans of double and single precision transforms as one text.
   std::string export_wisdom() const;

@@ -1,8 +1,11 @@
 #include "scene/plan.h"
 
+#include <algorithm>
+
 #include "base/error.h"
 #include "contact/solver.h"
 #include "scene/load_history.h"
+#include "scene/stress_stage.h"
 
 namespace brinell::scene {
 
@@ -33,6 +36,17 @@ Plan::Plan(Engine& engine, const Scene& scene) {
   if (total_increments(scene.steps()) > 1) items.push_back({"contact", "last solved pressure, to go back to", field});
   for (const PlanItem& item : items) memory_bytes += item.bytes;
   refuse_beyond(engine.memory_limit(), static_cast<double>(memory_bytes), grid, "");
+
+  std::uint64_t least = memory_bytes;
+  for (const StressStagePart& part : StressStage::parts(engine, scene, 0)) least += part.bytes;
+  refuse_beyond(engine.memory_limit(), static_cast<double>(least), grid, "");
+  if (total_increments(scene.steps()) > 1) {
+    stress_spectra_limit = std::min(engine.cache_limit(), engine.memory_limit() - least) / 2;
+  }
+  for (const StressStagePart& part : StressStage::parts(engine, scene, stress_spectra_limit)) {
+    items.push_back({"stress", part.what, part.bytes});
+    memory_bytes += part.bytes;
+  }
 }
 
 }  // namespace brinell::scene

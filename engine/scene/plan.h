@@ -11,14 +11,15 @@
 namespace brinell::scene {
 
 struct PlanItem {
-  const char* stage;  // "surface", "contact"
+  const char* stage;  // "surface", "contact", "stress"
   std::string what;
   std::uint64_t bytes;
 };
 
 struct Plan {
   std::vector<PlanItem> items;
-  std::uint64_t memory_bytes = 0;  // of all items
+  std::uint64_t memory_bytes = 0;          // of all items
+  std::uint64_t stress_spectra_limit = 0;  // bytes of influence coefficients that the stress of each body may keep
 
   /// Throws Status::too_large if the scene needs more than the engine allows.
   Plan(Engine& engine, const Scene& scene);

@@ -26,14 +26,26 @@ struct PressureSums {
 }  // namespace
 
 const char* name(Stage stage) {
-  return stage == Stage::surface ? "surface" : "contact";
+  switch (stage) {
+    case Stage::surface: return "surface";
+    case Stage::contact: return "contact";
+    case Stage::stress: break;
+  }
+  return "stress";
 }
 
 Run::Run(Engine& engine, const Scene& scene)
     : engine_(engine),
       scene_((scene.check_complete(), scene)),
       plan_(engine, scene),
-      contact_modulus_(scene.contact_modulus()) {}
+      contact_modulus_(scene.contact_modulus()) {
+  if (scene_.subsurface().depths.empty()) return;
+  stress_ = std::make_unique<StressStage>(engine_, scene_, plan_.stress_spectra_limit);
+}
+
+bool Run::is_finished() const {
+  return increments_.size() == static_cast<std::size_t>(total()) && !increments_.back().stress_missing;
+}
 
 /// Sums the surfaces up and sets up the solver.
 void Run::prepare() {
@@ -63,7 +75,11 @@ void Run::prepare() {
   }
 }
 
-const Increment& Run::advance(const std::function<bool(const Progress&)>& proceed) {
+const Increment& Run::advance(const Proceed& proceed) {
+  if (!increments_.empty() && increments_.back().stress_missing) {
+    compute_stress(proceed);
+    return increments_.back();
+  }
   const auto solved = static_cast<std::int32_t>(increments_.size());
   if (solved == total()) {
     fail(Status::wrong_state, "all " + std::to_string(total()) + " increments of the run are solved");
@@ -102,7 +118,32 @@ const Increment& Run::advance(const std::function<bool(const Progress&)>& procee
   increments_.back().wall_seconds = seconds;
   solving_seconds_ += seconds;
   stage_seconds_[static_cast<int>(Stage::contact)] += seconds;
+  if (stress_ != nullptr) {
+    increments_.back().stress_missing = true;
+    compute_stress(proceed);
+  }
   return increments_.back();
+}
+
+/// Of the last solved increment.
+void Run::compute_stress(const Proceed& proceed) {
+  prepare();
+  const auto start = Clock::now();
+  Increment& increment = increments_.back();
+  const auto go_on = [&] {
+    return !proceed || proceed({increment.position, static_cast<std::int32_t>(increments_.size()) - 1, total(),
+                                increment.iterations, increment.certificate.worst(),
+                                increment.wall_seconds + seconds_since(start)});
+  };
+  const auto largest = stress_->compute(solver_->pressure().data(), contact_modulus_,
+                                        scene_.steps()[static_cast<std::size_t>(increment.position.step)], go_on);
+  std::copy(largest.begin(), largest.end(), increment.max_von_mises);
+  const double seconds = seconds_since(start);
+  stage_seconds_[static_cast<int>(Stage::stress)] += seconds;
+  if (!increment.stress_missing) return;  // fields made anew after loading are no part of the increment's time
+  increment.stress_missing = false;
+  increment.wall_seconds += seconds;
+  solving_seconds_ += seconds;
 }
 
 Increment Run::summary(const contact::Solution& solution, const Position& position) {
@@ -164,7 +205,40 @@ Increment Run::summary(const contact::Solution& solution, const Position& positi
   return increment;
 }
 
+std::size_t Run::field_size(Field field) const {
+  const Grid& grid = scene_.grid();
+  if (!is_below_surface(field)) return grid.nodes();
+  const std::vector<Field>& asked = scene_.subsurface().fields;
+  if (std::find(asked.begin(), asked.end(), field) == asked.end()) {
+    fail(Status::wrong_state,
+         "the scene does not ask for the field " + name(field) + ": name it in the request for the subsurface");
+  }
+  return grid.nodes() * depths().size() * values_per_node(field);
+}
+
 void Run::copy_field(Field field, std::span<double> values) {
+  if (is_below_surface(field)) {
+    const Buffer<double>& all = stress_values(field);
+    std::copy(all.begin(), all.end(), values.begin());
+  } else {
+    copy_surface_field(field, values);
+  }
+}
+
+void Run::copy_layer(Field field, std::int64_t layer, std::span<double> values) {
+  const double* begin = stress_values(field).data() + static_cast<std::size_t>(layer) * values.size();
+  std::copy(begin, begin + values.size(), values.begin());
+}
+
+/// A field below the surface, computed now if it is not there: after loading, or where that was cancelled or failed.
+const Buffer<double>& Run::stress_values(Field field) {
+  field_size(field);  // refuses what the scene does not ask for
+  if (increments_.empty()) fail(Status::wrong_state, "no increment is solved yet: there is no field");
+  if (!stress_->has_fields()) compute_stress({});
+  return stress_->field(field);
+}
+
+void Run::copy_surface_field(Field field, std::span<double> values) {
   if (field == Field::undeformed_gap) {
     prepare();
     std::copy(gap_.begin(), gap_.end(), values.begin());
@@ -182,7 +256,7 @@ void Run::copy_field(Field field, std::span<double> values) {
       case Field::pressure: values[n] = p[n] * contact_modulus_; break;
       case Field::gap: values[n] = g[n] * unit - approach; break;
       case Field::displacement: values[n] = g[n] * unit - (gap_[n] - first_touch); break;
-      case Field::undeformed_gap: break;
+      default: break;
     }
   }
 }

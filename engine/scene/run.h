@@ -14,6 +14,7 @@
 #include "scene/load_history.h"
 #include "scene/plan.h"
 #include "scene/scene.h"
+#include "scene/stress_stage.h"
 
 namespace brinell::scene {
 
@@ -32,6 +33,8 @@ struct Increment {
   double max_pressure = 0;             // [Pa]
   double max_pressure_at[2] = {0, 0};  // [m]
   double mean_gap = 0;                 // [m]
+  LargestVonMises max_von_mises[2];    // by Which
+  bool stress_missing = false;         // computing it was cancelled or failed; advance() or a field makes up for it
   contact::Certificate certificate;
   double wall_seconds = 0;
 };
@@ -53,14 +56,14 @@ struct Progress {
   double seconds = 0;
 };
 
-enum class Field : std::int32_t { pressure = 1, gap = 2, displacement = 3, undeformed_gap = 4 };
-
-enum class Stage : std::int32_t { surface = 0, contact = 1 };
-inline constexpr std::int32_t kStages = 2;
+enum class Stage : std::int32_t { surface = 0, contact = 1, stress = 2 };
+inline constexpr std::int32_t kStages = 3;
 const char* name(Stage stage);
 
 class Run {
  public:
+  using Proceed = std::function<bool(const Progress&)>;
+
   /// Plans; allocates no fields.
   Run(Engine& engine, const Scene& scene);
 
@@ -70,15 +73,24 @@ class Run {
   const std::vector<Increment>& increments() const { return increments_; }
   const std::vector<TracePoint>& trace() const { return trace_; }
   double stage_seconds(Stage stage) const { return stage_seconds_[static_cast<int>(stage)]; }
+  bool has_stage(Stage stage) const { return stage != Stage::stress || stress_ != nullptr; }
 
   /// Solves the next increment and returns it, converged or not. Returns false from `proceed` to cancel: throws
-  /// Status::cancelled and the state is that after the last solved increment.
-  const Increment& advance(const std::function<bool(const Progress&)>& proceed);
+  /// Status::cancelled and the state is that after the last solved increment. Once its contact is solved an increment
+  /// stays solved, also if its stress is cancelled or fails: it is marked, and the next call makes up for it first.
+  const Increment& advance(const Proceed& proceed);
 
-  std::size_t field_size() const { return scene_.grid().nodes(); }
+  /// Nothing is left for advance() to do.
+  bool is_finished() const;
 
-  /// Copies a field of the last solved increment.
+  const std::vector<double>& depths() const { return scene_.subsurface().depths; }
+
+  /// Numbers in a field. Throws Status::wrong_state if the scene does not ask for it.
+  std::size_t field_size(Field field) const;
+
+  /// Copies a field of the last solved increment: field_size numbers, or one layer's share of them.
   void copy_field(Field field, std::span<double> values);
+  void copy_layer(Field field, std::int64_t layer, std::span<double> values);
 
   /// The state as bytes: versioned, with a fingerprint of the scene and a checksum.
   std::vector<std::byte> save() const;
@@ -90,6 +102,9 @@ class Run {
   using Clock = std::chrono::steady_clock;
 
   void prepare();
+  void compute_stress(const Proceed& proceed);
+  void copy_surface_field(Field field, std::span<double> values);
+  const Buffer<double>& stress_values(Field field);
   Increment summary(const contact::Solution& solution, const Position& position);
 
   Engine& engine_;
@@ -98,6 +113,7 @@ class Run {
   double contact_modulus_;
   Buffer<double> gap_;  // [m], empty until the first increment
   std::unique_ptr<contact::Solver> solver_;
+  std::unique_ptr<StressStage> stress_;  // null: the scene asks for none
 
   // What the next increment starts from:
   Origin step_origin_;  // of the step under way

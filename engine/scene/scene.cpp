@@ -1,5 +1,6 @@
 #include "scene/scene.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -7,6 +8,7 @@
 #include "base/error.h"
 #include "base/fingerprint.h"
 #include "parallel/arena.h"
+#include "subsurface/depths.h"
 
 namespace brinell::scene {
 
@@ -71,6 +73,18 @@ void add_members(Fingerprint& f, const Heights& h) {
 }
 
 }  // namespace
+
+bool Subsurface::wants(Which body) const {
+  return max_von_mises[static_cast<int>(body)] ||
+         std::any_of(fields.begin(), fields.end(), [&](Field field) { return body_of(field) == body; });
+}
+
+bool Subsurface::wants_max_von_mises(Which body) const {
+  return max_von_mises[static_cast<int>(body)] || std::any_of(fields.begin(), fields.end(), [&](Field field) {
+           return body_of(field) == body &&
+                  invariant_of(field).value_or(subsurface::Invariant::von_mises) == subsurface::Invariant::von_mises;
+         });
+}
 
 void Scene::set_grid(const Grid& grid, Boundary boundary) {
   for (const auto& [name, nodes] : {std::pair{"nx", grid.nx}, std::pair{"ny", grid.ny}}) {
@@ -149,6 +163,9 @@ void Scene::add(const Step& step) {
   require(step.drive == StepDrive::approach || step.target >= 0, Status::invalid_argument,
           std::string(name) + " = " + text(step.target) + (step.drive == StepDrive::force ? " N" : " Pa") +
               ": must not be negative: bodies press on each other, they do not stick");
+  for (const double ratio : step.traction_ratio) {
+    require(std::isfinite(ratio), Status::invalid_argument, "traction_ratio = " + text(ratio) + ": must be finite");
+  }
   steps_.push_back(step);
 }
 
@@ -159,6 +176,17 @@ void Scene::set_solver(const SolverSettings& solver) {
   require(solver.max_iterations >= 1, Status::invalid_argument,
           "max_iterations = " + std::to_string(solver.max_iterations) + ": must be at least 1");
   solver_ = solver;
+}
+
+void Scene::set_subsurface(const Subsurface& wanted) {
+  subsurface::check_depths(wanted.depths);
+  for (const Field field : wanted.fields) {
+    require(is_below_surface(field), Status::invalid_argument,
+            "fields: " + name(field) + " lies on the surface and is always there; name fields below it");
+  }
+  require(wanted.wants(Which::lower) || wanted.wants(Which::upper), Status::invalid_argument,
+          "nothing is asked for below the surface: name fields, or set max_von_mises or upper_max_von_mises");
+  subsurface_ = wanted;
 }
 
 double Scene::contact_modulus() const {
@@ -180,6 +208,12 @@ void Scene::check_complete() const {
         steps_[n].drive != StepDrive::mean_pressure || boundary_ == Boundary::periodic, Status::invalid_scene,
         "step " + std::to_string(n) + ": mean_pressure needs a periodic boundary; prescribe normal_force instead");
   }
+  for (const Which which : {Which::lower, Which::upper}) {
+    const std::string label = which == Which::lower ? "lower" : "upper";
+    require(!subsurface_.wants(which) || !body(which).rigid, Status::invalid_scene,
+            "the stress below the " + label + " body's surface is asked for, but that body is rigid: give it " +
+                "youngs_modulus and poissons_ratio, or ask for the other body's");
+  }
 }
 
 std::uint64_t Scene::fingerprint() const {
@@ -198,10 +232,17 @@ std::uint64_t Scene::fingerprint() const {
     f.add(static_cast<std::int32_t>(step.drive));
     f.add(step.increments);
     f.add(step.target);
+    for (const double ratio : step.traction_ratio) f.add(ratio);
   }
   f.add(solver_.tolerance);
   f.add(solver_.max_iterations);
   f.add(solver_.mixed_precision);
+  for (const double depth : subsurface_.depths) f.add(depth);
+  for (const Field field : subsurface_.fields) f.add(static_cast<std::int32_t>(field));
+  for (const Which which : {Which::lower, Which::upper}) {
+    f.add(subsurface_.max_von_mises[static_cast<int>(which)]);
+    if (subsurface_.wants(which)) f.add(body(which).poissons_ratio);
+  }
   return f.value();
 }
 

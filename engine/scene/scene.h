@@ -9,6 +9,7 @@
 
 #include "base/buffer.h"
 #include "base/grid.h"
+#include "scene/field.h"
 #include "surface/height_map.h"
 #include "surface/roughness.h"
 #include "surface/shapes.h"
@@ -34,7 +35,8 @@ enum class StepDrive : std::int32_t { none = 0, force = 1, approach = 2, mean_pr
 struct Step {
   StepDrive drive = StepDrive::none;
   std::int32_t increments = 1;
-  double target = 0;  // [N], [m] or [Pa]
+  double target = 0;                  // [N], [m] or [Pa]
+  double traction_ratio[2] = {0, 0};  // full sliding: shear along x, y on the lower body / pressure
 };
 
 struct SolverSettings {
@@ -43,7 +45,17 @@ struct SolverSettings {
   bool mixed_precision = false;
 };
 
-enum class Which : std::int32_t { lower = 0, upper = 1 };
+/// What is wanted of the stress below the surfaces.
+struct Subsurface {
+  std::vector<double> depths;              // [m], in each body's own frame
+  std::vector<Field> fields;               // below the surface, of either body
+  bool max_von_mises[2] = {false, false};  // by Which: the largest value and its place, without a field
+
+  bool wants(Which body) const;
+
+  /// Asked for, or a by-product: whoever wants the stress or the von Mises field gets it too.
+  bool wants_max_von_mises(Which body) const;
+};
 
 class Scene {
  public:
@@ -54,12 +66,15 @@ class Scene {
   void add(const surface::HeightMap& heights, surface::Detrend detrend);
   void add(const Step& step);
   void set_solver(const SolverSettings& solver);
+  void set_subsurface(const Subsurface& wanted);
 
   const Grid& grid() const { return grid_; }
   Boundary boundary() const { return boundary_; }
   const std::vector<SurfaceEntry>& surfaces() const { return surfaces_; }
   const std::vector<Step>& steps() const { return steps_; }
   const SolverSettings& solver() const { return solver_; }
+  const Body& body(Which which) const { return bodies_[static_cast<int>(which)]; }
+  const Subsurface& subsurface() const { return subsurface_; }
 
   /// 1/E* = (1−ν₁²)/E₁ + (1−ν₂²)/E₂ [Pa]. Throws Status::invalid_scene if both bodies are rigid.
   double contact_modulus() const;
@@ -77,6 +92,7 @@ class Scene {
   std::vector<SurfaceEntry> surfaces_;
   std::vector<Step> steps_;
   SolverSettings solver_;
+  Subsurface subsurface_;
 };
 
 }  // namespace brinell::scene

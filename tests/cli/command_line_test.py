@@ -48,7 +48,7 @@ SUMMARY_KEYS = {"title", "converged", "version", "engine", "plan", "increments",
 INCREMENT_KEYS = {
     "step", "increment", "normal_force", "approach", "tilt", "centre_of_force", "first_touch", "contact_area",
     "contact_nodes", "max_pressure", "max_pressure_at", "mean_gap", "max_von_mises", "max_von_mises_at",
-    "max_equivalent_plastic_strain", "max_equivalent_plastic_strain_at", "plastic_nodes", "iterations",
+    "upper_max_von_mises", "upper_max_von_mises_at", "max_equivalent_plastic_strain", "max_equivalent_plastic_strain_at", "plastic_nodes", "iterations",
     "convolutions", "certificate", "wall_seconds"}
 
 
@@ -249,6 +249,133 @@ class CommandLine(unittest.TestCase):
     def test_report_without_gnuplot_names_it(self):
         self.expect(self.run_scene(), 0)
         self.expect(self.brinell("report", self.out, env={**os.environ, "PATH": str(self.folder)}), 3, "gnuplot")
+
+    # ------------------------------------------------------------------ below the surface
+
+    def below_scene(self, output, layers="layers = 20\nlayer_thickness = 0.7e-6", step="", upper="rigid = true"):
+        """A sphere on steel: contact radius 14.8 um, peak pressure 2.18 GPa."""
+        return self.write("scene.toml", f"""title = "Below"
+[grid]
+nodes = [64, 64]
+spacing = [0.6e-6, 0.6e-6]
+{layers}
+[lower]
+youngs_modulus = 210e9
+poissons_ratio = 0.3
+[upper]
+{upper}
+[[surface]]
+shape = "sphere"
+radius = 1e-3
+[[step]]
+normal_force = 1.0
+increments = 2
+{step}
+[output]
+{output}
+""")
+
+    def test_largest_von_mises_is_what_hertz_says(self):
+        radius = (0.75 * 1e-3 * (1 - 0.09) / 210e9) ** (1 / 3)
+        peak = 1.5 / (3.141592653589793 * radius**2)
+        self.below_scene('fields = ["von_mises", "stress"]', step="[[step]]\nnormal_force = 1.0\ntraction_ratio = [0.5, 0]")
+        self.expect(self.run_scene(), 0)
+        summary = self.summary()
+        self.assertEqual(summary["plan"]["stages"], ["surface", "contact", "stress"])
+        self.assertGreater(summary["stage_seconds"]["stress"], 0)
+        _, pressed, sliding = summary["increments"]
+        # 25 cells across the contact radius: within a few tenths of a percent
+        self.assertAlmostEqual(pressed["max_von_mises"] / peak, 0.620041, delta=0.002)
+        self.assertAlmostEqual(pressed["max_von_mises_at"][2] / radius, 0.48086, delta=0.005)
+        self.assertIsNone(pressed["upper_max_von_mises"])
+        self.assertGreater(sliding["max_von_mises"], 1.2 * pressed["max_von_mises"])
+        self.assertLess(sliding["max_von_mises_at"][2], 0.1 * radius)
+        self.assertEqual(sliding["max_pressure"], pressed["max_pressure"])
+
+    def test_no_layers_no_stress(self):
+        self.below_scene('fields = ["pressure"]')  # layers alone ask for nothing
+        self.expect(self.run_scene(), 0)
+        summary = self.summary()
+        self.assertEqual(summary["plan"]["stages"], ["surface", "contact"])
+        self.assertNotIn("stress", summary["stage_seconds"])
+        for key in ("max_von_mises", "max_von_mises_at", "upper_max_von_mises", "upper_max_von_mises_at"):
+            self.assertIsNone(summary["increments"][-1][key])
+        bare = summary["plan"]["memory_bytes"]
+        self.below_scene('fields = ["pressure"]', layers="")
+        self.assertEqual(json.loads(self.brinell("plan", self.scene, "--json").stdout)["memory_bytes"], bare)
+
+    def test_the_largest_alone_stores_no_field(self):
+        both = "youngs_modulus = 70e9\npoissons_ratio = 0.2"
+        self.below_scene('fields = []\nmaxima = ["von_mises", "upper_von_mises"]', upper=both,
+                         layers="layer_depths = [0, 2e-6, 5e-6, 9e-6]")
+        plan = json.loads(self.brinell("plan", self.scene, "--json").stdout)
+        self.assertFalse([item for item in plan["items"] if item["what"].startswith("field")])
+        self.expect(self.run_scene(), 0)
+        last = self.summary()["increments"][-1]
+        self.assertGreater(last["max_von_mises"], 0)
+        self.assertGreater(last["upper_max_von_mises"], 0)
+        self.assertNotEqual(last["max_von_mises"], last["upper_max_von_mises"])
+        self.assertFalse((self.out / "fields.h5").exists())
+
+    def test_fields_below_the_surface_are_in_the_file_with_their_depths(self):
+        both = "same_as_lower = true"
+        self.below_scene('fields = ["pressure", "stress", "upper_von_mises", "hydrostatic"]', upper=both,
+                         layers="layer_depths = [0, 2e-6, 5e-6]")
+        self.expect(self.run_scene(), 0)
+        tree = xml.etree.ElementTree.parse(self.out / "fields.xdmf")
+        names = {a.get("Name") for a in tree.iter("Attribute")}
+        self.assertLessEqual({"pressure", "stress_xx", "stress_xy", "upper_von_mises", "hydrostatic"}, names)
+        sizes = {d.text.split(":")[1].rsplit("/", 1)[1]: d.get("Dimensions") for d in tree.iter("DataItem")
+                 if d.get("Format") == "HDF"}
+        self.assertEqual(sizes["stress"], "3 64 64 6")
+        self.assertEqual(sizes["upper_von_mises"], "3 64 64")
+        self.assertEqual(sizes["pressure"], "1 64 64")
+        self.assertIn("0 2e-06 5e-06", [d.text for d in tree.iter("DataItem")])
+        if shutil.which("h5dump"):
+            dump = subprocess.run(["h5dump", "-a", "/depths", self.out / "fields.h5"], capture_output=True, text=True)
+            self.assertIn("0, 2e-06, 5e-06", dump.stdout)
+
+    def test_threads_do_not_change_a_bit_below_the_surface(self):
+        self.below_scene('fields = ["stress", "principal_1"]', step="traction_ratio = [0.2, 0.1]")
+        fields = []
+        for threads in (1, 2, 8):
+            self.expect(self.run_scene("--threads", threads), 0)
+            fields.append((self.out / "fields.h5").read_bytes())
+        self.assertEqual(fields[0], fields[1])
+        self.assertEqual(fields[0], fields[2])
+
+    def test_resume_makes_the_stress_anew_to_the_same_bits(self):
+        self.below_scene('fields = ["stress"]')
+        self.expect(self.run_scene(), 0)
+        before = self.summary()
+        fields = (self.out / "fields.h5").read_bytes()
+        self.expect(self.brinell("resume", self.out), 0)
+        self.assertEqual(without_times(self.summary()), without_times(before))
+        self.assertEqual((self.out / "fields.h5").read_bytes(), fields)
+
+    def test_bad_requests_below_the_surface_are_told_with_their_line(self):
+        fields = 'fields = ["stress"]'
+        layers = "layers = 20\nlayer_thickness = 0.7e-6"
+        cases = [
+            (fields, "layers = 20", "", ["scene.toml:2: [grid]", "layer_thickness is missing"]),
+            (fields, "layer_thickness = 1e-6", "", [":2: [grid]", "layers is missing", "field stress"]),
+            (fields, "", "", [":2: [grid]", "layer_depths"]),
+            (fields, "layer_depths = [0, -1e-6]", "", [":5: [grid]", "layer_depths", "at least 0"]),
+            (fields, "layer_depths = [2e-6, 1e-6]", "", [":5: [grid]", "increasing"]),
+            (fields, "layer_depths = [1e-6]\nlayers = 3", "", [":5: [grid]", "either"]),
+            ('fields = ["von_misses"]', layers, "", ["'von_misses'", "'von_mises'"]),
+            ('maxima = ["tresca"]', layers, "", ["maxima", "von_mises"]),
+            ('maxima = ["von_mises"]', "", "", ["[grid]", "the largest von_mises"]),
+            ('fields = ["upper_stress"]', layers, "", ["[output]", "upper", "rigid"]),
+            (fields, layers, "traction_ratio = 0.3", ["[[step]] 1", "traction_ratio"]),
+            (fields, layers, "traction_ratio = [nan, 0]", ["[[step]] 1", "traction_ratio"]),
+        ]
+        for output, grid, step, words in cases:
+            with self.subTest(output + grid + step):
+                self.below_scene(output, grid, step)
+                for result in (self.run_scene(), self.brinell("check", self.scene)):
+                    self.expect(result, 2, "brinell: ", "scene.toml", *words)
+                self.assertFalse(self.out.exists())
 
     # ------------------------------------------------------------------ height maps
 

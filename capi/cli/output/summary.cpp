@@ -35,6 +35,16 @@ Json pair_json(const double (&values)[2]) {
   return {values[0], values[1]};
 }
 
+Json place_json(const double (&values)[3]) {
+  if (values[0] != values[0]) return nullptr;
+  return {values[0], values[1], values[2]};
+}
+
+Json number_json(double value) {
+  if (value != value) return nullptr;
+  return value;
+}
+
 Json increment_json(const brn_increment& increment) {
   return {{"step", increment.step},
           {"increment", increment.increment},
@@ -49,8 +59,10 @@ Json increment_json(const brn_increment& increment) {
           {"max_pressure", increment.max_pressure},
           {"max_pressure_at", pair_json(increment.max_pressure_at)},
           {"mean_gap", increment.mean_gap},
-          {"max_von_mises", nullptr},
-          {"max_von_mises_at", nullptr},
+          {"max_von_mises", number_json(increment.max_von_mises)},
+          {"max_von_mises_at", place_json(increment.max_von_mises_at)},
+          {"upper_max_von_mises", number_json(increment.upper_max_von_mises)},
+          {"upper_max_von_mises_at", place_json(increment.upper_max_von_mises_at)},
           {"max_equivalent_plastic_strain", nullptr},
           {"max_equivalent_plastic_strain_at", nullptr},
           {"plastic_nodes", nullptr},
@@ -82,6 +94,12 @@ std::string counted(std::size_t count, const std::string& noun) {
 std::string padded(std::string text, std::size_t width) {
   if (text.size() < width) text.resize(width, ' ');
   return text;
+}
+
+std::string von_mises_text(double value) {
+  std::array<char, 32> text{"-"};
+  if (value == value) std::snprintf(text.data(), text.size(), "%.5g", value);
+  return padded(text.data(), 11);
 }
 
 }  // namespace
@@ -146,14 +164,18 @@ std::string trace_csv(brn_run* run) {
 }
 
 std::string summary_table(brn_run* run) {
-  std::string text =
-      "step  increment  force [N]    approach [m]  area [m2]    max p [Pa]   iterations  certificate\n";
+  const bool below = !depths_of(run).empty();
+  std::string text = "step  increment  force [N]    approach [m]  area [m2]    max p [Pa]   ";
+  text += below ? "von Mises    upper [Pa]   iterations  certificate\n" : "iterations  certificate\n";
   for (int k = 0; k < brn_run_solved_increments(run); ++k) {
     const brn_increment i = increment_of(run, k);
     const double worst = std::max({i.penetration, i.complementarity, i.tension, i.balance});
     std::array<char, 160> line{};
-    std::snprintf(line.data(), line.size(), "%4d  %9d  %-11.5g  %-12.5g  %-11.5g  %-11.5g  %10d  %.1e%s\n", i.step,
-                  i.increment, i.normal_force, i.approach, i.contact_area, i.max_pressure, i.iterations, worst,
+    std::snprintf(line.data(), line.size(), "%4d  %9d  %-11.5g  %-12.5g  %-11.5g  %-11.5g  ", i.step, i.increment,
+                  i.normal_force, i.approach, i.contact_area, i.max_pressure);
+    text += line.data();
+    if (below) text += von_mises_text(i.max_von_mises) + "  " + von_mises_text(i.upper_max_von_mises) + "  ";
+    std::snprintf(line.data(), line.size(), "%10d  %.1e%s\n", i.iterations, worst,
                   i.converged != 0 ? "" : "  not converged");
     text += line.data();
   }

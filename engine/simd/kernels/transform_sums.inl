@@ -9,14 +9,15 @@
 namespace brinell::simd {
 namespace {
 
-/// z[position] += sign · spectrum · x, times −i if `turn`.
-template <class Arch, bool turn, class Real>
-void add_product(const Real* x, const Real* spectrum, Real sign, std::int64_t positions, Real* z) {
+/// z[position] = (`more`: +=) sign · spectrum · x, times −i if `turn`.
+template <class Arch, bool turn, bool more, class Real>
+void put_product(const Real* x, const Real* spectrum, Real sign, std::int64_t positions, Real* z) {
   using V = Batch<Arch, Real>;
   constexpr std::int64_t lanes = kLanes<Arch, Real>;
   for (std::int64_t p = 0; p < positions; ++p) {
     const V factor = V(sign) * V::load_aligned(spectrum + p * lanes);
-    store(z + p * 2 * lanes, load<V>(z + p * 2 * lanes) + product<turn>(load<V>(x + p * 2 * lanes), factor));
+    const Complex<V> term = product<turn>(load<V>(x + p * 2 * lanes), factor);
+    store(z + p * 2 * lanes, more ? load<V>(z + p * 2 * lanes) + term : term);
   }
 }
 
@@ -24,22 +25,22 @@ void add_product(const Real* x, const Real* spectrum, Real sign, std::int64_t po
 template <class Arch, class Real>
 void sum_of_products(const BlockTerm<Real>* terms, std::int64_t count, std::int64_t part, std::int64_t positions,
                      Real* z) {
-  using V = Batch<Arch, Real>;
   constexpr std::int64_t lanes = kLanes<Arch, Real>;
   constexpr std::int64_t together = 32;  // positions, so that z stays near while the terms come in
   for (std::int64_t first = 0; first < positions; first += together) {
     const std::int64_t some = positions - first < together ? positions - first : together;
     Real* sum = z + first * 2 * lanes;
-    for (std::int64_t p = 0; p < some; ++p) store(sum + p * 2 * lanes, Complex<V>{V(Real{0}), V(Real{0})});
     for (const BlockTerm<Real>* term = terms; term != terms + count; ++term) {
       const std::int64_t from = term->turn_x ? 1 - part : part;
       const Real sign = term->turn_x && part == 1 ? Real{-1} : Real{1};
       const Real* x = term->transform + (from * positions + first) * 2 * lanes;
       const Real* spectrum = term->spectrum + first * lanes;
-      if (term->turn_y) {
-        add_product<Arch, true>(x, spectrum, sign, some, sum);
+      if (term == terms) {
+        const auto put = term->turn_y ? put_product<Arch, true, false, Real> : put_product<Arch, false, false, Real>;
+        put(x, spectrum, sign, some, sum);
       } else {
-        add_product<Arch, false>(x, spectrum, sign, some, sum);
+        const auto add = term->turn_y ? put_product<Arch, true, true, Real> : put_product<Arch, false, true, Real>;
+        add(x, spectrum, sign, some, sum);
       }
     }
   }
