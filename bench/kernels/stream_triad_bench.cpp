@@ -28,9 +28,10 @@ int main(int argc, char** argv) {
   for (const std::size_t megabytes : {1, 4, 64}) {
     for (int threads = 1; threads <= most; threads *= 2) {
       const std::string name = "bm_stream_triad/" + std::to_string(megabytes) + "/" + std::to_string(threads);
-      benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
-        bm_stream_triad(state, megabytes, threads);
-      })->UseRealTime()->Unit(benchmark::kMillisecond);
+      benchmark::RegisterBenchmark(name.c_str(),
+                                   [=](benchmark::State& state) { bm_stream_triad(state, megabytes, threads); })
+          ->UseRealTime()
+          ->Unit(benchmark::kMillisecond);
     }
   }
   benchmark::Initialize(&argc, argv);

@@ -1,5 +1,6 @@
-/* A pressure that the caller already has, here that of Hertz below a sphere, p0 sqrt(1 - r^2/a^2): the stress below it,
- * without a scene. Compares the largest von Mises stress and its depth with 0.620041 p0 and 0.48086 a (nu = 0.3). */
+/* A pressure that the caller already has, here that of Hertz below a sphere, p0 sqrt(1 - r^2/a^2): the stress below
+ * it, without a scene. Compares the largest von Mises stress and its depth with 0.620041 p0 and 0.48086 a (nu = 0.3).
+ */
 #include <brinell.h>
 #include <math.h>
 #include <stdio.h>

@@ -26,9 +26,10 @@
  *     handle yet (brn_last_message).
  *   - A create call sets *out to NULL on failure. Destroying NULL does nothing. No exception, abort or exit crosses
  *     this interface.
- *   - Option structs begin with struct_size. Initialise them with their brn_..._init function, which is
- *     compiled into the caller and so fills in the caller's size, and the defaults. Members are only ever appended; the engine reads those that struct_size covers and uses the
- *     defaults for the others, and writes only those of a result that struct_size covers.
+ *   - Option structs begin with struct_size. Initialise them with their brn_..._init function, which is compiled into
+ *     the caller and so fills in the caller's size, and the defaults. Members are only ever appended; the engine
+ * reads those that struct_size covers and uses the defaults for the others, and writes only those of a result that
+ *     struct_size covers.
  *   - The caller owns all arrays; they are borrowed for the duration of the call.
  *   - An engine may be used from several threads at once. A scene or run is used by one thread at a time; a second
  *     one gets BRN_WRONG_STATE. Distinct runs work concurrently on one engine.
@@ -254,9 +255,9 @@ enum { BRN_DETREND_NONE = 0, BRN_DETREND_MEAN = 1, BRN_DETREND_PLANE = 2 };
 typedef struct brn_heights {
   size_t struct_size;
   const double *values;
-  int64_t nx, ny; /* must be the grid's */
+  int64_t nx, ny;             /* must be the grid's */
   int64_t stride_x, stride_y; /* 0: contiguous, 1 and nx */
-  int32_t detrend; /* BRN_DETREND_... */
+  int32_t detrend;            /* BRN_DETREND_... */
   int32_t reserved;
 } brn_heights;
 
@@ -277,10 +278,10 @@ BRN_API brn_status brn_scene_add_heights(brn_scene *scene, const brn_heights *he
 /* Height statistics of ISO 25178-2, each about the mean plane through zero mean height. */
 typedef struct brn_statistics {
   size_t struct_size;
-  double sa, sq;   /* arithmetic and root mean square height [m] */
-  double ssk, sku; /* skewness and kurtosis */
+  double sa, sq;     /* arithmetic and root mean square height [m] */
+  double ssk, sku;   /* skewness and kurtosis */
   double sp, sv, sz; /* highest peak, deepest valley, their sum [m] */
-  double sdq;      /* root mean square gradient */
+  double sdq;        /* root mean square gradient */
 } brn_statistics;
 
 static inline void brn_statistics_init(brn_statistics *value) {
@@ -304,9 +305,9 @@ enum { BRN_DRIVE_FORCE = 1, BRN_DRIVE_APPROACH = 2, BRN_DRIVE_MEAN_PRESSURE = 3 
  * zero force, or from the approach min(0, first touch). */
 typedef struct brn_step {
   size_t struct_size;
-  int32_t drive;      /* BRN_DRIVE_...: mean pressure on periodic grids only */
-  int32_t increments; /* >= 1 */
-  double target;      /* N >= 0, m, or Pa >= 0 */
+  int32_t drive;            /* BRN_DRIVE_...: mean pressure on periodic grids only */
+  int32_t increments;       /* >= 1 */
+  double target;            /* N >= 0, m, or Pa >= 0 */
   double traction_ratio[2]; /* full sliding: shear along x and y on the lower body, as multiples of the pressure; the
                                upper body gets the opposite. Enters the stress below the surface alone */
 } brn_step;
@@ -403,12 +404,12 @@ BRN_API uint64_t brn_run_memory_bytes(const brn_run *run);
 
 typedef struct brn_progress {
   size_t struct_size;
-  int32_t step, increment;   /* being solved */
-  int32_t solved, total;     /* increments of the run */
-  int32_t iteration;         /* on the full grid, in this increment */
+  int32_t step, increment; /* being solved */
+  int32_t solved, total;   /* increments of the run */
+  int32_t iteration;       /* on the full grid, in this increment */
   int32_t reserved;
-  double estimate;           /* of the certificate */
-  double seconds;            /* since the increment began */
+  double estimate; /* of the certificate */
+  double seconds;  /* since the increment began */
 } brn_progress;
 
 /* Called on the thread that called brn_run_advance or brn_run_execute, never concurrently. Return 0 to go on; any
@@ -417,8 +418,8 @@ typedef int32_t (*brn_progress_callback)(const brn_progress *progress, void *use
 
 /* Solves the next increment. BRN_NOT_CONVERGED: its result is kept and marked, and the run may go on.
  * BRN_WRONG_STATE: there is no further increment. callback may be NULL. An increment whose contact is solved stays
- * solved when its stress is then cancelled or fails: it is marked stress_missing, and the next call computes the stress
- * before anything else and returns. */
+ * solved when its stress is then cancelled or fails: it is marked stress_missing, and the next call computes the
+ * stress before anything else and returns. */
 BRN_API brn_status brn_run_advance(brn_run *run, brn_progress_callback callback, void *user);
 
 /* Solves all remaining increments, and a stress that is missing; stops at the first that does not end in BRN_OK. */
@@ -432,7 +433,7 @@ BRN_API int32_t brn_run_solved_increments(const brn_run *run);
 typedef struct brn_increment {
   size_t struct_size;
   int32_t step, increment;
-  int32_t converged; /* 0 or 1 */
+  int32_t converged;    /* 0 or 1 */
   int32_t iterations;   /* on the full grid */
   int32_t convolutions; /* on the full grid, the certificate's included */
   int32_t reserved;
@@ -530,12 +531,12 @@ BRN_API const char *brn_run_stage_name(const brn_run *run, int32_t index);
 BRN_API double brn_run_stage_seconds(const brn_run *run, int32_t index);
 
 enum {
-  BRN_FIELD_PRESSURE = 1,     /* [Pa] */
-  BRN_FIELD_GAP = 2,          /* of the deformed surfaces [m] */
-  BRN_FIELD_DISPLACEMENT = 3, /* normal, of both bodies together [m] */
+  BRN_FIELD_PRESSURE = 1,       /* [Pa] */
+  BRN_FIELD_GAP = 2,            /* of the deformed surfaces [m] */
+  BRN_FIELD_DISPLACEMENT = 3,   /* normal, of both bodies together [m] */
   BRN_FIELD_UNDEFORMED_GAP = 4, /* [m]; known before the first increment */
   /* Below the lower body's surface [Pa], tension positive; only those that brn_subsurface.fields names: */
-  BRN_FIELD_STRESS = 20,      /* xx yy zz yz xz xy of each node, side by side */
+  BRN_FIELD_STRESS = 20, /* xx yy zz yz xz xy of each node, side by side */
   BRN_FIELD_VON_MISES = 21,
   BRN_FIELD_TRESCA = 22,      /* the largest principal stress less the smallest */
   BRN_FIELD_HYDROSTATIC = 23, /* mean of the normal stresses, negative under pressure */
@@ -554,12 +555,12 @@ enum {
 
 /* Copies a field of the last solved increment: nx*ny doubles on the surface; below it layers*ny*nx, element
  * (layer*ny + j)*nx + i, each of the stress six numbers. *count receives the number needed; values may be NULL if
- * capacity is 0 (that returns BRN_OK: a query of the size). A run that was loaded, or whose stress is missing, computes
- * it here. BRN_WRONG_STATE: the scene does not ask for this field. */
+ * capacity is 0 (that returns BRN_OK: a query of the size). A run that was loaded, or whose stress is missing,
+ * computes it here. BRN_WRONG_STATE: the scene does not ask for this field. */
 BRN_API brn_status brn_run_get_field(brn_run *run, int32_t field, double *values, size_t capacity, size_t *count);
 
-/* The same for one layer of a field below the surface, counted from the uppermost: nx*ny doubles, six times as many of
- * the stress. */
+/* The same for one layer of a field below the surface, counted from the uppermost: nx*ny doubles, six times as many
+ * of the stress. */
 BRN_API brn_status brn_run_get_layer(brn_run *run, int32_t field, int64_t layer, double *values, size_t capacity,
                                      size_t *count);
 
@@ -600,12 +601,12 @@ BRN_API brn_status brn_benchmark_run(brn_engine *engine, int32_t index, double *
 /* Tractions that the caller already has, on a grid of its own: the stress below them needs no scene and no run. */
 typedef struct brn_stress_request {
   size_t struct_size;
-  int64_t nx, ny;         /* nodes, >= 1 */
-  double dx, dy;          /* spacing [m], > 0 */
-  int32_t boundary;       /* BRN_BOUNDARY_... */
-  int32_t body;           /* BRN_LOWER or BRN_UPPER: whose frame, and who gets the shears with the opposite sign */
-  double poissons_ratio;  /* -1 < nu < 0.5 */
-  const double *depths;   /* [m] rising, zero is the surface; at least one */
+  int64_t nx, ny;        /* nodes, >= 1 */
+  double dx, dy;         /* spacing [m], > 0 */
+  int32_t boundary;      /* BRN_BOUNDARY_... */
+  int32_t body;          /* BRN_LOWER or BRN_UPPER: whose frame, and who gets the shears with the opposite sign */
+  double poissons_ratio; /* -1 < nu < 0.5 */
+  const double *depths;  /* [m] rising, zero is the surface; at least one */
   size_t depth_count;
   const double *pressure; /* nx*ny doubles each [Pa]; NULL: none of this kind, but one is needed. Pressure presses, */
   const double *shear_x;  /* a shear > 0 pushes the lower body's surface along +x */
@@ -640,7 +641,8 @@ typedef struct brn_stress_fields {
   double *tresca;       /* the largest principal stress less the smallest */
   double *hydrostatic;  /* mean of the normal stresses */
   double *principal[3]; /* falling */
-  double *direction[9]; /* [3*k + axis] of principal stress k: unit vectors, their signs without meaning; all or none */
+  double
+      *direction[9]; /* [3*k + axis] of principal stress k: unit vectors, their signs without meaning; all or none */
 } brn_stress_fields;
 
 static inline void brn_stress_fields_init(brn_stress_fields *value) {

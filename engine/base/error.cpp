@@ -1,11 +1,13 @@
 #include "base/error.h"
 
-#include <charconv>
 #include <array>
+#include <charconv>
 
 namespace brinell {
 
-void fail(Status status, const std::string& message) { throw Error(status, message); }
+void fail(Status status, const std::string& message) {
+  throw Error(status, message);
+}
 
 std::string text(double value) {
   std::array<char, 32> digits{};

@@ -15,10 +15,8 @@ class Fingerprint {
   }
 
   template <class T>
-    requires std::is_arithmetic_v<T>
-  void add(T value) {
-    add_bytes(&value, sizeof value);
-  }
+  requires std::is_arithmetic_v<T>
+  void add(T value) { add_bytes(&value, sizeof value); }
 
   std::uint64_t value() const { return value_; }
 

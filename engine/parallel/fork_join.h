@@ -1,5 +1,5 @@
-// What TBB guarantees but ThreadSanitizer cannot see, because TBB's library is built without it: all before a parallel
-// loop happens before its bodies, and these before all that follows it. Empty in other builds.
+// What TBB guarantees but ThreadSanitizer cannot see, because TBB's library is built without it: all before a
+// parallel loop happens before its bodies, and these before all that follows it. Empty in other builds.
 #pragma once
 
 #ifdef BRINELL_ANNOTATE_FORK_JOIN

@@ -57,7 +57,8 @@ std::span<const Isa> supported() {
 
 const KernelTable& kernels(Isa isa) {
   if (!runs(isa)) {
-    std::string message = "instruction set '" + std::string(name(isa)) + "' is not supported by this machine; it has:";
+    std::string message =
+        "instruction set '" + std::string(name(isa)) + "' is not supported by this machine; it has:";
     for (const Isa has : supported()) message += " " + std::string(name(has));
     fail(Status::unsupported, message);
   }
@@ -68,6 +69,8 @@ const KernelTable& kernels(Isa isa) {
   return kernels_baseline();
 }
 
-const KernelTable& best_kernels() { return kernels(supported().back()); }
+const KernelTable& best_kernels() {
+  return kernels(supported().back());
+}
 
 }  // namespace brinell::simd

@@ -1,7 +1,8 @@
-/* NULL handles and pointers everywhere, unknown constants, engine options out of range; the values of the statuses. */
-#include "check.h"
-
+/* NULL handles and pointers everywhere, unknown constants, engine options out of range; the values of the statuses.
+ */
 #include <stdlib.h>
+
+#include "check.h"
 
 /* Values never change: programs have them compiled in. */
 static void statuses_are_pinned(void) {

@@ -10,14 +10,14 @@
 namespace {
 
 struct Destroy {
-  void operator()(brn_engine* engine) const { brn_engine_destroy(engine); }
-  void operator()(brn_scene* scene) const { brn_scene_destroy(scene); }
-  void operator()(brn_run* run) const { brn_run_destroy(run); }
+  void operator()(brn_engine *engine) const { brn_engine_destroy(engine); }
+  void operator()(brn_scene *scene) const { brn_scene_destroy(scene); }
+  void operator()(brn_run *run) const { brn_run_destroy(run); }
 };
 
 int failures = 0;
 
-void check(bool holds, const char* what) {
+void check(bool holds, const char *what) {
   if (holds) return;
   std::printf("failed: %s (%s)\n", what, brn_last_message());
   ++failures;
@@ -29,10 +29,10 @@ int main() {
   constexpr double kModulus = 210e9 / (1.0 - 0.3 * 0.3), kRadius = 1e-3, kForce = 1.0;
   const double contact_radius = std::cbrt(0.75 * kForce * kRadius / kModulus);
 
-  brn_engine* raw_engine = nullptr;
+  brn_engine *raw_engine = nullptr;
   check(brn_engine_create(nullptr, &raw_engine) == BRN_OK, "engine");
   const std::unique_ptr<brn_engine, Destroy> engine(raw_engine);
-  brn_scene* raw_scene = nullptr;
+  brn_scene *raw_scene = nullptr;
   check(brn_scene_create(&raw_scene) == BRN_OK, "scene");
   const std::unique_ptr<brn_scene, Destroy> scene(raw_scene);
 
@@ -59,12 +59,12 @@ int main() {
   check(brn_scene_add_shape(scene.get(), &shape) == BRN_OK, "shape");
   check(brn_scene_add_step(scene.get(), &step) == BRN_OK, "step");
 
-  brn_run* raw_run = nullptr;
+  brn_run *raw_run = nullptr;
   check(brn_run_create(engine.get(), scene.get(), &raw_run) == BRN_OK, "run");
   const std::unique_ptr<brn_run, Destroy> run(raw_run);
   int calls = 0;
-  const auto count_calls = [](const brn_progress*, void* user) -> std::int32_t {
-    ++*static_cast<int*>(user);
+  const auto count_calls = [](const brn_progress *, void *user) -> std::int32_t {
+    ++*static_cast<int *>(user);
     return 0;
   };
   check(brn_run_execute(run.get(), count_calls, &calls) == BRN_OK, "execute");

@@ -1,9 +1,9 @@
 /* A run from plan to result: order of calls, buffers, cancellation, a solve that fails, an empty contact. */
-#include "check.h"
-
 #include <fenv.h>
 #include <math.h>
 #include <stdlib.h>
+
+#include "check.h"
 
 enum { n = 32, nodes = n * n };
 

@@ -1,7 +1,7 @@
 /* Saved runs: to the same bits from any increment, and damaged ones are refused. */
-#include "check.h"
-
 #include <stdlib.h>
+
+#include "check.h"
 
 enum { n = 24, nodes = n * n, increments = 4 };
 

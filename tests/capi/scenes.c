@@ -1,13 +1,13 @@
 /* Values out of range in every description: each is refused, with a message that names the member and its value, and
  * leaves the scene as it was. */
-#include "check.h"
-
 #include <math.h>
 
-#define REFUSED(scene, call, words)                 \
-  do {                                              \
-    CHECK_STATUS(BRN_INVALID_ARGUMENT, call);       \
-    CHECK_SAYS(brn_scene_message(scene), words);    \
+#include "check.h"
+
+#define REFUSED(scene, call, words)              \
+  do {                                           \
+    CHECK_STATUS(BRN_INVALID_ARGUMENT, call);    \
+    CHECK_SAYS(brn_scene_message(scene), words); \
   } while (0)
 
 static brn_scene *empty_scene(void) {

@@ -1,8 +1,8 @@
 /* Clients of other releases: a shorter struct_size hides the members beyond it, a longer one is accepted and what it
  * adds is ignored. */
-#include "check.h"
-
 #include <stddef.h>
+
+#include "check.h"
 
 static void an_older_client_gets_defaults(void) {
   brn_engine *engine = NULL;

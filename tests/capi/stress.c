@@ -1,10 +1,10 @@
 /* The stress below the surface: of a scene, by field, by layer and by its largest value; and of tractions that the
  * caller has. The pressed sphere is that of sphere_scene: contact radius 14.8 um. */
-#include "check.h"
-
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
+
+#include "check.h"
 
 enum { n = 48, nodes = n * n, layers = 12, cells = nodes * layers };
 
@@ -84,9 +84,9 @@ static void below_a_sphere_is_what_hertz_says(void) {
   von_mises = field_of(run, BRN_FIELD_VON_MISES, cells);
   for (k = 0; k < cells; ++k) {
     const double *s = stress + 6 * k;
-    const double square = 0.5 * ((s[0] - s[1]) * (s[0] - s[1]) + (s[1] - s[2]) * (s[1] - s[2]) +
-                                 (s[2] - s[0]) * (s[2] - s[0])) +
-                          3.0 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]);
+    const double square =
+        0.5 * ((s[0] - s[1]) * (s[0] - s[1]) + (s[1] - s[2]) * (s[1] - s[2]) + (s[2] - s[0]) * (s[2] - s[0])) +
+        3.0 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]);
     CHECK(fabs(sqrt(square) - von_mises[k]) < 1e-12 * p0); /* a few roundings of the largest stress */
   }
   free(von_mises);
@@ -537,7 +537,7 @@ static void bad_requests_alone_are_refused(void) {
   CHECK_STATUS(BRN_OK, brn_stress_compute(engine, &request, &arrays, &maxima));
   CHECK(maxima.von_mises == 0.0 && isnan(maxima.von_mises_at[0]));
 
-#define REFUSED(status, words)                                                       \
+#define REFUSED(status, words)                                                  \
   CHECK_STATUS(status, brn_stress_compute(engine, &request, &arrays, &maxima)); \
   CHECK_SAYS(brn_engine_message(engine), words)
 

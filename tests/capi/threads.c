@@ -1,8 +1,8 @@
 /* Threads of the caller: a handle in use refuses a second thread, messages belong to the thread, the number of the
  * engine's threads leaves no trace in the bits, and runs on one engine do not disturb each other. */
-#include "check.h"
-
 #include <pthread.h>
+
+#include "check.h"
 
 enum { n = 48, nodes = n * n };
 

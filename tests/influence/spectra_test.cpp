@@ -124,7 +124,9 @@ TEST_F(Spectra, conductance_is_the_positive_definite_graph_of_an_m_matrix) {
     for (std::size_t n = 0; n < row.size(); ++n) {
       sum += row[n];
       const double share_of_zero = row[0] / static_cast<double>(row.size());
-      if (n != 0) { EXPECT_LE(row[n], share_of_zero); }
+      if (n != 0) {
+        EXPECT_LE(row[n], share_of_zero);
+      }
     }
     EXPECT_GT(sum, 0.0);
     EXPECT_NEAR(sum, conductance_symbol(grid, 0, 0), 1e-13 * row[0]);

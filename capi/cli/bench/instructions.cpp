@@ -42,6 +42,7 @@ constexpr int kNotFound = 127;
 
 int run(std::vector<std::string> words, const std::filesystem::path& output, const std::filesystem::path& errors) {
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   posix_spawn_file_actions_t actions;
