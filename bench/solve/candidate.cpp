@@ -75,7 +75,7 @@ SolveInput SolveInputs::make(const SolveScene& scene, std::int64_t nodes) {
     if (scene.by_approach) {
       contact::Solver solver(engine.resources, grid, scene.boundary, gap, false);
       *memory_ = solver
-                     .solve(contact::Drive::force, *memory_, kTargetTolerance, kMostIterations,
+                     .solve({contact::Drive::force, *memory_}, kTargetTolerance, kMostIterations,
                             [](const contact::Report&) { return true; })
                      .approach;
     }
@@ -91,7 +91,7 @@ std::function<SolveSample()> prepare(const SolveCase& which, const SolveInput& i
     const double start = seconds(clock);
     contact::Solver solver(engine->resources, grid, which.scene->boundary, input.gap,
                            which.method == SolveMethod::mixed);
-    const contact::Solution solution = solver.solve(drive_of(*which.scene), input.target, which.tolerance,
+    const contact::Solution solution = solver.solve({drive_of(*which.scene), input.target}, which.tolerance,
                                                     kMostIterations, [](const contact::Report&) { return true; });
     const double end = seconds(clock);
     return SolveSample{end - start,         solution.certificate.worst(),

@@ -82,15 +82,16 @@ void bm_iteration(benchmark::State& state, const bench::SolveCase& which) {
   const Grid unit{grid.nx, grid.ny, 1, 1};
   const contact::Compliance<double> compliance(resources, unit, which.scene->boundary);
   Buffer<double> p(grid.nodes()), g(grid.nodes());
-  contact::Level<Real> level(resources, compliance, unit, which.scene->boundary, {input.gap, 1 / grid.dx, 0.0},
-                             {p.data(), g.data()});
+  contact::Level<Real> level(resources, compliance, contact::PlacedGrid::centred(unit), which.scene->boundary,
+                             {input.gap, 1 / grid.dx, 0.0}, {p.data(), g.data()});
   const auto go_on = [](const contact::Report&) { return true; };
-  level.solve(contact::Drive::force, input.target, 1e-3, 500, go_on);
+  const contact::Load load{contact::Drive::force, input.target};
+  level.solve(load, 1e-3, 500, go_on);
   const std::vector<double> start(p.begin(), p.end());
   for (auto _ : state) {
     std::copy(start.begin(), start.end(), p.begin());
     IterationTimer timer(clock_for(which.threads));
-    level.solve(contact::Drive::force, input.target, 1e-14, kIterations, [&](const contact::Report& report) {
+    level.solve(load, 1e-14, kIterations, [&](const contact::Report& report) {
       timer.observe(report.iteration);
       return true;
     });

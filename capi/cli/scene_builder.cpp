@@ -100,8 +100,6 @@ class Builder {
     if (file_.lower.hardening) fail(file_.lower.hardening->line, "[lower.hardening]" + release);
     if (file_.upper.hardening) fail(file_.upper.hardening->line, "[upper.hardening]" + release);
     for (const auto& step : file_.steps) {
-      if (step.eccentricity) fail(step.line, "[[step]]: eccentricity" + release);
-      if (step.tilt) fail(step.line, "[[step]]: tilt" + release);
       if (step.offset) fail(step.line, "[[step]]: offset" + release);
     }
     for (const auto& field : file_.output.fields) {
@@ -216,6 +214,11 @@ class Builder {
     step.drive = part.normal_force ? BRN_DRIVE_FORCE : part.approach ? BRN_DRIVE_APPROACH : BRN_DRIVE_MEAN_PRESSURE;
     step.target = part.normal_force ? *part.normal_force : part.approach ? *part.approach : *part.mean_pressure;
     if (part.traction_ratio) std::copy_n(part.traction_ratio->data(), 2, step.traction_ratio);
+    if (part.tilt) std::copy_n(part.tilt->data(), 2, step.tilt);
+    if (part.eccentricity) {
+      step.rotation = BRN_ROTATION_FREE;
+      std::copy_n(part.eccentricity->data(), 2, step.eccentricity);
+    }
     accept(brn_scene_add_step(scene_.get(), &step), part.line,
            "[[step]] " + std::to_string(&part - file_.steps.data() + 1));
   }

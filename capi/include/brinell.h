@@ -18,7 +18,8 @@
  *
  * Units are SI everywhere: m, N, Pa, rad, s. Surface fields are row-major with x inner: node (i, j) is element
  * j*nx + i and lies at ((i - (nx-1)/2)*dx, (j - (ny-1)/2)*dy). Pressure is positive in compression; it is uniform
- * on the cell around its node. The deformed gap is gap + displacement - approach.
+ * on the cell around its node. The deformed gap is gap + displacement - approach,
+ * plus the plane sx*x + sy*y where the bodies are tilted.
  *
  * Rules of this interface
  *   - Every call that can fail returns a brn_status. A message for a person, which names the argument, its value and
@@ -301,6 +302,11 @@ BRN_API brn_status brn_height_statistics(const brn_heights *heights, double dx, 
 
 enum { BRN_DRIVE_FORCE = 1, BRN_DRIVE_APPROACH = 2, BRN_DRIVE_MEAN_PRESSURE = 3 };
 
+enum {
+  BRN_ROTATION_FIXED = 0, /* the slopes are brn_step.tilt: parallel unless set */
+  BRN_ROTATION_FREE = 1   /* the slopes follow from brn_step.eccentricity, where the force acts */
+};
+
 /* One leg of the load history: from the state before it to `target` in equal increments. The first leg starts from
  * zero force, or from the approach min(0, first touch). */
 typedef struct brn_step {
@@ -310,6 +316,12 @@ typedef struct brn_step {
   double target;            /* N >= 0, m, or Pa >= 0 */
   double traction_ratio[2]; /* full sliding: shear along x and y on the lower body, as multiples of the pressure; the
                                upper body gets the opposite. Enters the stress below the surface alone */
+  int32_t rotation;         /* BRN_ROTATION_...; periodic grids cannot rotate */
+  int32_t reserved;
+  double eccentricity[2]; /* with free rotation: centre of the pressure, x and y [m] from the grid's centre, within
+                             its nodes. With a prescribed approach the force follows */
+  double tilt[2];         /* with fixed rotation: slopes sx, sy [rad]; the deformed gap is
+                             gap + displacement - approach + sx*x + sy*y, approach being at the grid's centre */
 } brn_step;
 
 static inline void brn_step_init(brn_step *value) {
@@ -319,6 +331,12 @@ static inline void brn_step_init(brn_step *value) {
   value->target = 0.0;
   value->traction_ratio[0] = 0.0;
   value->traction_ratio[1] = 0.0;
+  value->rotation = BRN_ROTATION_FIXED;
+  value->reserved = 0;
+  value->eccentricity[0] = 0.0;
+  value->eccentricity[1] = 0.0;
+  value->tilt[0] = 0.0;
+  value->tilt[1] = 0.0;
 }
 BRN_API brn_status brn_scene_add_step(brn_scene *scene, const brn_step *step);
 
@@ -440,7 +458,7 @@ typedef struct brn_increment {
   int64_t contact_nodes;
   double normal_force;       /* [N] */
   double approach;           /* [m] */
-  double tilt[2];            /* [rad] */
+  double tilt[2];            /* slopes sx, sy [rad] of the plane that is added to the gap */
   double centre_of_force[2]; /* [m] */
   double first_touch;        /* smallest undeformed gap [m] */
   double contact_area;       /* [m^2] */
@@ -451,7 +469,8 @@ typedef struct brn_increment {
   double penetration;     /* largest interpenetration / largest displacement */
   double complementarity; /* sum p*|gap| / (sum p * largest displacement) */
   double tension;         /* largest tensile / largest compressive pressure */
-  double balance;         /* |force - prescribed force| / prescribed force; 0 if approach is prescribed */
+  double balance;         /* |force - prescribed force| / prescribed force; with free rotation also of the moments,
+                             relative to force * half the grid, and of a prescribed approach: the worst of them */
   double wall_seconds;
   /* Largest von Mises stress [Pa] and its x, y, z [m] in the body's own frame, both interpolated between nodes and
      depths: */

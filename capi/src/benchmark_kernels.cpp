@@ -137,11 +137,12 @@ double solver_passes(scene::Engine& engine) {
     p[i] = contact ? 1 : 0;
     g[i] = contact ? 0 : 1;
   }
-  contact::Passes<double> passes(engine.arena(), engine.kernels(), n * n);
+  contact::Passes<double> passes(engine.arena(), engine.kernels(), contact::PlacedGrid::centred({n, n, 1, 1}));
+  const contact::LinearTrend approach{0.5, 0, 0};
   return time_of(engine, 2, [&] {
-    passes.residual(0.5, 1e-30, p.data(), g.data(), z.data());
+    passes.residual(approach, 1e-30, p.data(), g.data(), z.data());
     passes.correlate(p.data(), z.data(), v.data(), q.data());
-    passes.redirect(0.5, 0, 0, 0.5, p.data(), g.data(), z.data(), v.data());
+    passes.redirect(0.5, {}, {}, approach, p.data(), g.data(), z.data(), v.data());
     passes.dot(v.data(), q.data());
     passes.advance(1e-12, p.data(), v.data(), g.data(), q.data());
   });

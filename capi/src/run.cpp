@@ -156,6 +156,8 @@ brn_status brn_run_get_increment(brn_run* run, int32_t index, brn_increment* out
     result.contact_nodes = i.contact_nodes;
     result.normal_force = i.normal_force;
     result.approach = i.approach;
+    result.tilt[0] = i.tilt[0];
+    result.tilt[1] = i.tilt[1];
     result.centre_of_force[0] = i.centre_of_force[0];
     result.centre_of_force[1] = i.centre_of_force[1];
     result.first_touch = i.first_touch;

@@ -157,13 +157,15 @@ brn_status brn_height_statistics(const brn_heights* heights, double dx, double d
 brn_status brn_scene_add_step(brn_scene* scene, const brn_step* step) {
   return guarded_use(scene, "scene", [&] {
     const auto s = read(step, "step", brn_step_init, &brn_step::drive, &brn_step::increments, &brn_step::target,
-                        &brn_step::traction_ratio);
+                        &brn_step::traction_ratio, &brn_step::rotation, &brn_step::eccentricity, &brn_step::tilt);
     scene::Step checked;
     checked.drive = checked_enum<scene::StepDrive>(s.drive, BRN_DRIVE_MEAN_PRESSURE, "drive");
     checked.increments = s.increments;
     checked.target = s.target;
-    checked.traction_ratio[0] = s.traction_ratio[0];
-    checked.traction_ratio[1] = s.traction_ratio[1];
+    checked.free_rotation = checked_enum<int32_t>(s.rotation, BRN_ROTATION_FREE, "rotation") == BRN_ROTATION_FREE;
+    std::copy_n(s.traction_ratio, 2, checked.traction_ratio);
+    std::copy_n(s.eccentricity, 2, checked.eccentricity);
+    std::copy_n(s.tilt, 2, checked.tilt);
     scene->scene.add(checked);
   });
 }

@@ -7,10 +7,16 @@ namespace brinell::contact {
 
 namespace {
 
-struct PressureSums {
-  double total = 0;
+struct Errors {
+  double depth = 0;
   double complementarity = 0;
 };
+
+double half_side(std::int64_t nodes, double spacing) {
+  return 0.5 * static_cast<double>(nodes) * spacing;
+}
+
+constexpr std::int64_t kRowsPerTask = 16;
 
 }  // namespace
 
@@ -18,43 +24,68 @@ double Certificate::worst() const {
   return std::max({penetration, complementarity, tension, balance});
 }
 
-Certificate certificate_of(const Evidence& evidence, Drive drive, double target) {
+Certificate certificate_of(const Evidence& evidence, const Load& load, const Grid& grid) {
   Certificate certificate;
-  const double depth = std::max(0.0, evidence.approach - evidence.min_gap);
   if (evidence.displacement > 0) {
-    certificate.penetration = depth / evidence.displacement;
-    certificate.complementarity = evidence.complementarity / (evidence.total * evidence.displacement);
+    certificate.penetration = evidence.depth / evidence.displacement;
+    certificate.complementarity = evidence.complementarity / (evidence.pressure.one * evidence.displacement);
     certificate.tension = evidence.tension_displacement / evidence.displacement;
   } else {
-    certificate.penetration = depth > 0 ? 1 : 0;
+    certificate.penetration = evidence.depth > 0 ? 1 : 0;
   }
-  if (drive == Drive::force) certificate.balance = std::fabs(evidence.total - target) / target;
+  if (load.drive == Drive::force) {
+    certificate.balance = std::fabs(evidence.pressure.one - load.target) / load.target;
+  }
+  if (load.moments) {
+    const double moment_x = evidence.pressure.x - load.target * load.force_x;
+    const double moment_y = evidence.pressure.y - load.target * load.force_y;
+    certificate.balance =
+        std::max({certificate.balance, std::fabs(moment_x) / (load.target * half_side(grid.nx, grid.dx)),
+                  std::fabs(moment_y) / (load.target * half_side(grid.ny, grid.dy))});
+  }
   return certificate;
 }
 
+Freedom freedom_of(const Load& load) {
+  if (load.moments) return Freedom::linear;
+  return load.drive == Drive::force ? Freedom::constant : Freedom::none;
+}
+
+LinearTrend prescribed_approach(const Load& load) {
+  if (load.moments) return {};
+  return {load.drive == Drive::approach ? load.target : 0, -load.slope_x, -load.slope_y};
+}
+
 Certified certify(const parallel::Arena& arena, const Compliance<double>& compliance, Passes<double>& passes,
-                  std::size_t nodes, const UndeformedGap& gap, const double* p, double* g, Drive drive,
-                  double target) {
+                  const PlacedGrid& placed, const UndeformedGap& gap, const double* p, double* g, const Load& load) {
+  const Grid& grid = placed.grid;
   compliance.apply(p, g);
-  const simd::RefreshSums fresh = passes.refresh(gap, p, g);
-  const double approach = drive == Drive::force && fresh.load > 0 ? fresh.gap / fresh.load : target;
-  const auto sums = ordered_sum<PressureSums>(
-      arena, static_cast<std::int64_t>(nodes), 1 << 14,
-      [](PressureSums& total, const PressureSums& part) {
-        total.total += part.total;
+  passes.tilting(load.tilts());
+  const RefreshTotals fresh = passes.refresh(gap, p, g);
+  LinearTrend approach = prescribed_approach(load);
+  if (fresh.load.one > 0) approach = fit(freedom_of(load), fresh.load, fresh.gap, approach, kOnePoint);
+  const auto errors = ordered_sum<Errors>(
+      arena, grid.ny, kRowsPerTask,
+      [](Errors& total, const Errors& part) {
+        total.depth = std::max(total.depth, part.depth);
         total.complementarity += part.complementarity;
       },
       [&](std::int64_t begin, std::int64_t end) {
-        PressureSums part;
-        for (std::int64_t n = begin; n < end; ++n) {
-          part.total += p[n];
-          part.complementarity += std::fabs(p[n] * (g[n] - approach));
+        Errors part;
+        for (std::int64_t j = begin; j < end; ++j) {
+          const simd::Line along = approach.along(placed.x, placed.y + static_cast<double>(j) * grid.dy, grid.dx);
+          for (std::int64_t i = 0; i < grid.nx; ++i) {
+            const std::int64_t n = j * grid.nx + i;
+            const double r = g[n] - (along.value + along.slope * static_cast<double>(i));
+            part.depth = std::max(part.depth, -r);
+            part.complementarity += std::fabs(p[n] * r);
+          }
         }
         return part;
       });
-  return {approach, sums.total,
-          certificate_of({approach, sums.total, fresh.displacement, fresh.min_gap, sums.complementarity, 0}, drive,
-                         target)};
+  const PlaneSums pressure{fresh.load.one, fresh.load.x, fresh.load.y};
+  return {approach, pressure.one,
+          certificate_of({pressure, fresh.displacement, errors.depth, errors.complementarity, 0}, load, grid)};
 }
 
 }  // namespace brinell::contact

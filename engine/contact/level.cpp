@@ -25,6 +25,10 @@ constexpr double kRestartAfter = 0.05;
 constexpr int kRises = 3;
 // Iterations without a better certificate until the level is given up: round-off has been reached.
 constexpr int kPatience = 150;
+// Attempts to find where the factor that makes a pressure meet its moments is positive.
+constexpr int kFactorRounds = 40;
+// Part of the load by which force and moments may be missed: round-off of a sum over the grid.
+constexpr double kBalanced = 1e-13;
 // The error is believed down to this fraction of that of the last fresh convolution: what the updates of the
 // displacement, in Real, can keep.
 template <class Real>
@@ -50,63 +54,125 @@ fft::Workspace<float>& workspace_of(const Compliance<double>&, const Compliance<
 }  // namespace
 
 template <class Real>
-Level<Real>::Level(const Resources& resources, const Compliance<double>& exact, const Grid& grid, Boundary boundary,
-                   const UndeformedGap& gap, Fields fields)
+Level<Real>::Level(const Resources& resources, const Compliance<double>& exact, const PlacedGrid& placed,
+                   Boundary boundary, const UndeformedGap& gap, Fields fields)
     : arena_(resources.backend.arena),
-      grid_(grid),
+      placed_(placed),
       gap_(gap),
       fields_(fields),
-      self_compliance_(influence::Displacement(grid.dx, grid.dy)(0, 0)),
+      self_compliance_(influence::Displacement(placed.grid.dx, placed.grid.dy)(0, 0)),
       exact_(exact),
-      fast_(make_fast<Real>(resources, grid, boundary)),
-      preconditioner_(resources, grid, boundary, workspace_of(exact, fast_.get(), Real{})),
-      passes_(arena_, resources.backend.kernels, grid.nodes()),
-      v_(grid.nodes()),
-      q_(grid.nodes()),
-      z_(Buffer<Real>::uninitialised(grid.nodes())) {}
+      fast_(make_fast<Real>(resources, placed.grid, boundary)),
+      preconditioner_(resources, placed.grid, boundary, workspace_of(exact, fast_.get(), Real{})),
+      passes_(arena_, resources.backend.kernels, placed),
+      v_(placed.grid.nodes()),
+      q_(placed.grid.nodes()),
+      z_(Buffer<Real>::uninitialised(placed.grid.nodes())) {}
 
-/// Clipped and rescaled pressure, its displacement by a fresh convolution, and all that follows from them.
+template <class Real>
+void Level<Real>::prescribe(const Load& load) {
+  load_ = load;
+  freedom_ = freedom_of(load);
+  approach_ = prescribed_approach(load);
+  passes_.tilting(load.tilts());
+}
+
+/// On the largest rectangle around the force's point.
+template <class Real>
+void Level<Real>::add_uniform_pressure() {
+  const Grid& grid = placed_.grid;
+  const double pressure = load_.target / static_cast<double>(grid.nodes());
+  const auto range = [&](double first, double spacing, std::int64_t nodes, double at) {
+    const double last = first + static_cast<double>(nodes - 1) * spacing;
+    const double reach = load_.moments ? std::max(std::min(at - first, last - at), spacing) : HUGE_VAL;
+    return std::pair{std::max(first, at - reach), std::min(last, at + reach)};
+  };
+  const auto [left, right] = range(placed_.x, grid.dx, grid.nx, load_.force_x);
+  const auto [near, far] = range(placed_.y, grid.dy, grid.ny, load_.force_y);
+  for (std::int64_t j = 0; j < grid.ny; ++j) {
+    const double y = placed_.y + static_cast<double>(j) * grid.dy;
+    if (y < near || y > far) continue;
+    for (std::int64_t i = 0; i < grid.nx; ++i) {
+      const double x = placed_.x + static_cast<double>(i) * grid.dx;
+      if (x >= left && x <= right) fields_.p[j * grid.nx + i] += pressure;
+    }
+  }
+}
+
+/// Multiplies the pressure by the factor, linear in the place and zero where that is negative, that meets force and
+/// moments: among the multiples of p with these it is the one closest to p, weighted by p. Where all of p is taken
+/// the factor is one fit; where not, Newton's method for the part that is. False if p cannot meet them.
+template <class Real>
+bool Level<Real>::meet_load() {
+  const double total = load_.target;
+  const PlaneSums wanted{total, total * load_.force_x, total * load_.force_y};
+  const Grid& grid = placed_.grid;
+  const double right = placed_.x + static_cast<double>(grid.nx - 1) * grid.dx;
+  const double far = placed_.y + static_cast<double>(grid.ny - 1) * grid.dy;
+  LinearTrend factor{1, 0, 0};
+  for (int round = 0; round < kFactorRounds; ++round) {
+    const PlaneWeights carried = passes_.carried(factor, fields_.p);
+    if (!(carried.one > 0)) return false;
+    const PlaneSums met = carried.times(factor);
+    const bool balanced =
+        std::fabs(met.one - wanted.one) <= kBalanced * total &&
+        (!load_.moments || (std::fabs(met.x - wanted.x) <= kBalanced * total * (right - placed_.x + grid.dx) &&
+                            std::fabs(met.y - wanted.y) <= kBalanced * total * (far - placed_.y + grid.dy)));
+    if (balanced) {
+      passes_.clip(factor, fields_.p);
+      return true;
+    }
+    factor = fit(freedom_, carried, wanted, factor, kOnePoint);
+  }
+  return false;
+}
+
+/// Pressure without tension that meets the load, its displacement by a fresh convolution, and all that follows.
 template <class Real>
 void Level<Real>::refresh(LevelResult& result) {
-  total_ = passes_.clip(1, fields_.p);
-  if (drive_ == Drive::force && total_ != target_) total_ = passes_.clip(target_ / total_, fields_.p);
+  if (load_.drive == Drive::approach) {
+    passes_.clip({1, 0, 0}, fields_.p);
+  } else if (!meet_load()) {
+    add_uniform_pressure();
+    meet_load();
+  }
   exact_.apply(fields_.p, fields_.g);
   ++result.convolutions;
-  const simd::RefreshSums fresh = passes_.refresh(gap_, fields_.p, fields_.g);
-  sums_ = {fresh.active, fresh.load, fresh.gap, fresh.min_gap, 0};
-  const double mean_pressure = total_ / static_cast<double>(grid_.nodes());
+  const RefreshTotals fresh = passes_.refresh(gap_, fields_.p, fields_.g);
+  sums_ = {fresh.active, fresh.load, fresh.gap, 0};
+  pressure_ = {fresh.load.one, fresh.load.x, fresh.load.y};
+  const double mean_pressure = pressure_.one / static_cast<double>(placed_.grid.nodes());
   displacement_ = std::max(fresh.displacement, self_compliance_ * mean_pressure);
-  energy_ = fresh.energy - (drive_ == Drive::approach ? target_ * total_ : 0);
-}
-
-template <class Real>
-Certificate Level<Real>::estimate(double complementarity) const {
-  return certificate_of({approach_, total_, displacement_, sums_.min_gap, complementarity,
-                         self_compliance_ * std::max(0.0, sums_.tension)},
-                        drive_, target_);
-}
-
-template <class Real>
-void Level<Real>::correct_start(Drive drive, double target) {
-  const simd::RefreshSums start = passes_.refresh(gap_, fields_.p, fields_.g);
-  if (start.active == 0) return;
-  const double approach = drive == Drive::force ? start.gap / start.load : target;
-  passes_.residual(approach, 0, fields_.p, fields_.g, z_.data());
-  preconditioner_.apply_local(z_.data());
-  const double mean = drive == Drive::force ? passes_.sum(fields_.p, z_.data()) / start.active : 0;
-  passes_.correct(mean, fields_.p, z_.data());
-}
-
-template <class Real>
-LevelResult Level<Real>::solve(Drive drive, double target, double tolerance, std::int32_t max_iterations,
-                               Observer observer) {
-  LevelResult result;
-  drive_ = drive;
-  target_ = target;
-  const double nodes = static_cast<double>(grid_.nodes());
-  if (drive == Drive::force && !(passes_.clip(1, fields_.p) > 0)) {
-    std::fill_n(fields_.p, grid_.nodes(), target / nodes);
+  energy_ = fresh.energy;
+  if (freedom_ != Freedom::linear) {  // the work of what is prescribed
+    energy_ -= dot(prescribed_approach(load_), pressure_);
   }
+}
+
+template <class Real>
+Certificate Level<Real>::estimate(const simd::ResidualSums& residual) const {
+  return certificate_of({pressure_, displacement_, residual.depth, residual.complementarity,
+                         self_compliance_ * std::max(0.0, sums_.tension)},
+                        load_, placed_.grid);
+}
+
+template <class Real>
+void Level<Real>::correct_start(const Load& load) {
+  prescribe(load);
+  const RefreshTotals start = passes_.refresh(gap_, fields_.p, fields_.g);
+  if (start.active == 0) return;
+  approach_ = fit(freedom_, start.load, start.gap, approach_, kOnePoint);
+  passes_.residual(approach_, 0, fields_.p, fields_.g, z_.data());
+  preconditioner_.apply_local(z_.data());
+  const DirectionTotals sums = passes_.correlate(fields_.p, z_.data(), z_.data(), z_.data());
+  passes_.correct(fit(freedom_, sums.active, sums.z, {}, kOnePoint), fields_.p, z_.data());
+}
+
+template <class Real>
+LevelResult Level<Real>::solve(const Load& load, double tolerance, std::int32_t max_iterations, Observer observer) {
+  LevelResult result;
+  prescribe(load);
+  const double nodes = static_cast<double>(placed_.grid.nodes());
   refresh(result);
   preconditioner_.treat_large_scales(true);
 
@@ -124,21 +190,19 @@ LevelResult Level<Real>::solve(Drive drive, double target, double tolerance, std
   double in_contact = sums_.active;
 
   while (true) {
-    if (drive == Drive::approach || sums_.load > 0) {
-      approach_ = drive == Drive::force ? sums_.gap / sums_.load : target;
-    }
-    const double seed = kSeed * std::max(total_ / nodes, std::numeric_limits<double>::min() / kSeed);
+    if (sums_.load.one > 0) approach_ = fit(freedom_, sums_.load, sums_.gap, approach_, kOnePoint);
+    const double seed = kSeed * std::max(pressure_.one / nodes, std::numeric_limits<double>::min() / kSeed);
     simd::ResidualSums residual = passes_.residual(approach_, seed, fields_.p, fields_.g, z_.data());
     changed += residual.entered + std::max(0.0, in_contact - sums_.active);
     in_contact = residual.active;
 
-    const Certificate certificate = estimate(residual.complementarity);
-    if (!observer({grid_, result.iterations, fresh, certificate.worst()})) {
+    const Certificate certificate = estimate(residual);
+    if (!observer({placed_.grid, result.iterations, fresh, certificate.worst()})) {
       fail(Status::cancelled, "the progress callback asked to stop");
     }
     if (fresh) {
       result.approach = approach_;
-      result.total = total_;
+      result.total = pressure_.one;
       result.certificate = certificate;
       result.converged = certificate.worst() <= tolerance;
       fresh_error = certificate.worst();
@@ -180,17 +244,17 @@ LevelResult Level<Real>::solve(Drive drive, double target, double tolerance, std
     }
     if (preconditioned) preconditioner_.apply(z_.data());
 
-    const simd::DirectionSums sums = passes_.correlate(fields_.p, z_.data(), v_.data(), q_.data());
-    const double mean_z = drive == Drive::force ? sums.z / in_contact : 0;
-    const double mean_v = drive == Drive::force ? sums.v / in_contact : 0;
-    const double curvature_before = sums.vq - mean_v * sums.q;
+    const DirectionTotals sums = passes_.correlate(fields_.p, z_.data(), v_.data(), q_.data());
+    const LinearTrend trend_z = fit(freedom_, sums.active, sums.z, {}, kOnePoint);
+    const LinearTrend trend_v = fit(freedom_, sums.active, sums.v, {}, kOnePoint);
+    const double curvature_before = sums.vq - dot(trend_v, sums.q);
     double beta = 0;
     if (conjugate && changed <= kRestartAfter * in_contact && curvature_before > 0) {
-      beta = std::max(0.0, (sums.zq - mean_z * sums.q) / curvature_before);
+      beta = std::max(0.0, (sums.zq - dot(trend_z, sums.q)) / curvature_before);
     }
-    double slope = passes_.redirect(beta, mean_v, mean_z, approach_, fields_.p, fields_.g, z_.data(), v_.data());
+    double slope = passes_.redirect(beta, trend_v, trend_z, approach_, fields_.p, fields_.g, z_.data(), v_.data());
     if (!(slope < 0) && beta > 0) {
-      slope = passes_.redirect(0, 0, mean_z, approach_, fields_.p, fields_.g, z_.data(), v_.data());
+      slope = passes_.redirect(0, {}, trend_z, approach_, fields_.p, fields_.g, z_.data(), v_.data());
     }
 
     changed = 0;

@@ -5,15 +5,18 @@
 // after I. A. Polonsky and L. M. Keer (1999). Each iteration costs one convolution:
 //
 //   r = gap − approach in contact; a prescribed force makes the approach the mean gap in
-//       contact, weighted by the pressure: nodes that are about to leave hardly count
-//   z = preconditioner · r, less its mean in contact if the force is prescribed
+//       contact, weighted by the pressure: nodes that are about to leave hardly count;
+//       prescribed moments make it the linear trend of the gap, weighted alike
+//   z = preconditioner · r, less its mean in contact if the force is prescribed,
+//       or its linear trend if its moments are as well
 //   v = −z + β v,   β = z·q / v·q,   q = K v_old
 //   p += α v, gap += α K v,   α = −r·v / v·K v
 //
 // Nodes with a negative deformed gap enter at once. Nodes whose pressure turns negative leave, but keep that tension
 // until it matters: taking it out changes the displacement everywhere, which costs another convolution. It is
 // clipped, and the displacement recomputed, when it could cause a displacement comparable to the present error, and
-// always before convergence is declared: the certificate that is reported comes from a fresh convolution.
+// always before convergence is declared: the certificate that is reported comes from a fresh convolution. What was
+// clipped is made up for by a factor on the pressure, linear in the place where moments are prescribed.
 #pragma once
 
 #include <cstddef>
@@ -38,7 +41,7 @@ struct Fields {
 
 struct LevelResult {
   bool converged = false;
-  double approach = 0;
+  LinearTrend approach;
   double total = 0;  // Σ p
   Certificate certificate;
   std::int32_t iterations = 0;
@@ -50,25 +53,28 @@ template <class Real>
 class Level {
  public:
   /// exact is the compliance of this grid.
-  Level(const Resources& resources, const Compliance<double>& exact, const Grid& grid, Boundary boundary,
+  Level(const Resources& resources, const Compliance<double>& exact, const PlacedGrid& placed, Boundary boundary,
         const UndeformedGap& gap, Fields fields);
 
   /// One preconditioned step from a start whose displacement is known approximately: on entry p is the pressure and g
   /// that displacement. It brings in what a coarser grid could not know.
-  void correct_start(Drive drive, double target);
+  void correct_start(const Load& load);
 
-  /// target: Σ p > 0, or the approach. Starts from fields.p.
-  LevelResult solve(Drive drive, double target, double tolerance, std::int32_t max_iterations, Observer observer);
+  /// load.target: Σ p > 0, or the approach. Starts from fields.p.
+  LevelResult solve(const Load& load, double tolerance, std::int32_t max_iterations, Observer observer);
 
   /// Bytes of one on such a grid, without the exact compliance.
   static std::size_t bytes(const fft::Backend& backend, const Grid& grid, Boundary boundary);
 
  private:
+  void prescribe(const Load& load);
+  void add_uniform_pressure();
+  bool meet_load();
   void refresh(LevelResult& result);
-  Certificate estimate(double complementarity) const;
+  Certificate estimate(const simd::ResidualSums& residual) const;
 
   const parallel::Arena& arena_;
-  Grid grid_;
+  PlacedGrid placed_;
   UndeformedGap gap_;
   Fields fields_;
   double self_compliance_;
@@ -80,13 +86,13 @@ class Level {
   Buffer<Real> v_, q_, z_;
 
   // Of the present state:
-  Drive drive_ = Drive::force;
-  double target_ = 0;
-  double total_ = 0;  // Σ p of the clipped pressure
+  Load load_;
+  Freedom freedom_ = Freedom::none;
+  PlaneSums pressure_;  // of the clipped pressure
   double energy_ = 0;
   double displacement_ = 0;  // largest, as of the last fresh convolution
-  double approach_ = 0;
-  simd::AdvanceSums sums_;
+  LinearTrend approach_;
+  AdvanceTotals sums_;
 };
 
 }  // namespace brinell::contact

@@ -20,17 +20,21 @@ Grid coarsen(const Grid& grid) {
   return {(grid.nx + 1) / 2, (grid.ny + 1) / 2, 2 * grid.dx, 2 * grid.dy};
 }
 
+PlacedGrid coarsen(const PlacedGrid& finer) {
+  return {coarsen(finer.grid), finer.x + 0.5 * finer.grid.dx, finer.y + 0.5 * finer.grid.dy};
+}
+
 }  // namespace
 
-std::vector<CoarserGrid> coarser_grids(const Grid& grid, Boundary boundary, std::span<const double> gap,
+std::vector<CoarserGrid> coarser_grids(const PlacedGrid& placed, Boundary boundary, std::span<const double> gap,
                                        const parallel::Arena& arena) {
   std::vector<CoarserGrid> coarser;
-  Grid finer = grid;
+  PlacedGrid finer = placed;
   const double* finer_gap = gap.data();
-  while (can_coarsen(finer, boundary)) {
-    const Grid next = coarsen(finer);
-    coarser.push_back({next, Buffer<double>::uninitialised(next.nodes())});
-    restrict_to(finer, finer_gap, next, coarser.back().gap.data(), arena);
+  while (can_coarsen(finer.grid, boundary)) {
+    const PlacedGrid next = coarsen(finer);
+    coarser.push_back({next, Buffer<double>::uninitialised(next.grid.nodes())});
+    restrict_to(finer.grid, finer_gap, next.grid, coarser.back().gap.data(), arena);
     finer = next;
     finer_gap = coarser.back().gap.data();
   }

@@ -20,15 +20,22 @@ struct Box {
   std::int64_t i0 = 0, j0 = 0, nx = 0, ny = 0;
 
   static Box whole(const Grid& grid) { return {0, 0, grid.nx, grid.ny}; }
+
+  /// This part of a grid, in its place.
+  PlacedGrid of(const PlacedGrid& all) const {
+    return {{nx, ny, all.grid.dx, all.grid.dy},
+            all.x + static_cast<double>(i0) * all.grid.dx,
+            all.y + static_cast<double>(j0) * all.grid.dy};
+  }
   friend bool operator==(const Box&, const Box&) = default;
 };
 
 /// The coarser grids of one, finest first; the finest itself is not among them. Lengths keep their unit.
 struct CoarserGrid {
-  Grid grid;
+  PlacedGrid placed;
   Buffer<double> gap;
 };
-std::vector<CoarserGrid> coarser_grids(const Grid& grid, Boundary boundary, std::span<const double> gap,
+std::vector<CoarserGrid> coarser_grids(const PlacedGrid& placed, Boundary boundary, std::span<const double> gap,
                                        const parallel::Arena& arena);
 
 /// Bytes that coarser_grids returns.

@@ -5,56 +5,82 @@
 
 namespace brinell::contact {
 
-template <class Real>
-Passes<Real>::Passes(const parallel::Arena& arena, const simd::KernelTable& kernels, std::size_t nodes)
-    : arena_(arena),
-      kernels_(kernels.of<Real>().contact),
-      nodes_(static_cast<std::int64_t>(nodes)),
-      in_contact_((nodes + kBlock - 1) / kBlock, 1),
-      moving_(in_contact_.size(), 1) {}
-
-template <class Real>
-template <class Sums, class Combine, class Body>
-Sums Passes<Real>::over_blocks(const Combine& combine, const Body& body) {
-  return ordered_sum<Sums>(arena_, nodes_, kChunk, combine, [&](std::int64_t begin, std::int64_t end) {
-    Sums sums{};
-    for (std::int64_t first = begin; first < end; first += kBlock) {
-      combine(sums, body(first, static_cast<std::size_t>(std::min(kBlock, end - first)),
-                         static_cast<std::size_t>(first / kBlock)));
-    }
-    return sums;
-  });
-}
-
 namespace {
 
-void add(double& total, double part) {
-  total += part;
-}
+/// A stretch of one row: where it begins, and how far its nodes are apart.
+struct Stretch {
+  double x = 0, y = 0, spacing = 0;
 
-struct MinGap {
-  simd::AdvanceSums sums{0, 0, 0, HUGE_VAL, 0};
+  simd::Line places() const { return {x, spacing}; }
+  simd::Line of(const LinearTrend& trend) const { return trend.along(x, y, spacing); }
 };
 
-void combine(MinGap& total, const MinGap& part) {
-  total.sums.active += part.sums.active;
-  total.sums.load += part.sums.load;
-  total.sums.gap += part.sums.gap;
-  total.sums.min_gap = std::min(total.sums.min_gap, part.sums.min_gap);
-  total.sums.tension = std::max(total.sums.tension, part.sums.tension);
+// A row's sums in the plane, y being its place.
+PlaneSums in_plane(const simd::LinearSums& row, double y) {
+  return {row.one, row.x, row.one * y};
 }
 
-struct Refreshed {
-  simd::RefreshSums sums{0, 0, 0, HUGE_VAL, 0, 0};
-};
+PlaneWeights in_plane(const simd::QuadraticSums& row, double y) {
+  return {row.one, row.x, row.one * y, row.xx, row.x * y, row.one * y * y};
+}
 
-void combine(Refreshed& total, const Refreshed& part) {
-  total.sums.active += part.sums.active;
-  total.sums.load += part.sums.load;
-  total.sums.gap += part.sums.gap;
-  total.sums.min_gap = std::min(total.sums.min_gap, part.sums.min_gap);
-  total.sums.displacement = std::max(total.sums.displacement, part.sums.displacement);
-  total.sums.energy += part.sums.energy;
+AdvanceTotals in_plane(const simd::AdvanceSums& row, double y) {
+  return {row.active, in_plane(row.load, y), in_plane(row.gap, y), row.tension};
+}
+
+DirectionTotals in_plane(const simd::DirectionSums& row, double y) {
+  return {in_plane(row.active, y), in_plane(row.z, y), in_plane(row.q, y), in_plane(row.v, y), row.zq, row.vq};
+}
+
+RefreshTotals in_plane(const simd::RefreshSums& row, double y) {
+  return {row.active, in_plane(row.load, y), in_plane(row.gap, y), row.displacement, row.energy};
+}
+
+simd::ResidualSums in_plane(const simd::ResidualSums& row, double) {
+  return row;
+}
+
+double in_plane(double row, double) {
+  return row;
+}
+
+void combine(PlaneSums& total, const PlaneSums& part) {
+  total.one += part.one;
+  total.x += part.x;
+  total.y += part.y;
+}
+
+void combine(PlaneWeights& total, const PlaneWeights& part) {
+  total.one += part.one;
+  total.x += part.x;
+  total.y += part.y;
+  total.xx += part.xx;
+  total.xy += part.xy;
+  total.yy += part.yy;
+}
+
+void combine(AdvanceTotals& total, const AdvanceTotals& part) {
+  total.active += part.active;
+  combine(total.load, part.load);
+  combine(total.gap, part.gap);
+  total.tension = std::max(total.tension, part.tension);
+}
+
+void combine(DirectionTotals& total, const DirectionTotals& part) {
+  combine(total.active, part.active);
+  combine(total.z, part.z);
+  combine(total.q, part.q);
+  combine(total.v, part.v);
+  total.zq += part.zq;
+  total.vq += part.vq;
+}
+
+void combine(RefreshTotals& total, const RefreshTotals& part) {
+  total.active += part.active;
+  combine(total.load, part.load);
+  combine(total.gap, part.gap);
+  total.displacement = std::max(total.displacement, part.displacement);
+  total.energy += part.energy;
 }
 
 void combine(simd::ResidualSums& total, const simd::ResidualSums& part) {
@@ -62,113 +88,181 @@ void combine(simd::ResidualSums& total, const simd::ResidualSums& part) {
   total.entered += part.entered;
   total.complementarity += part.complementarity;
   total.barred = std::max(total.barred, part.barred);
+  total.depth = std::max(total.depth, part.depth);
 }
 
-void combine(simd::DirectionSums& total, const simd::DirectionSums& part) {
-  total.z += part.z;
-  total.q += part.q;
-  total.v += part.v;
-  total.zq += part.zq;
-  total.vq += part.vq;
+void combine(double& total, double part) {
+  total += part;
 }
-
-const auto kCombine = [](auto& total, const auto& part) { combine(total, part); };
 
 }  // namespace
 
 template <class Real>
-simd::AdvanceSums Passes<Real>::advance(double step, double* p, const Real* v, double* g, const Real* q) {
-  return over_blocks<MinGap>(kCombine,
-                             [&](std::int64_t i, std::size_t n, std::size_t) {
-                               MinGap part;
-                               kernels_.advance(n, step, p + i, v + i, g + i, q + i, &part.sums);
-                               return part;
-                             })
-      .sums;
+Passes<Real>::Passes(const parallel::Arena& arena, const simd::KernelTable& kernels, const PlacedGrid& placed)
+    : arena_(arena),
+      sets_(kernels.of<Real>()),
+      kernels_(&sets_.contact),
+      placed_(placed),
+      nodes_(static_cast<std::int64_t>(placed.grid.nodes())),
+      in_contact_((placed.grid.nodes() + kBlock - 1) / kBlock, 1),
+      moving_(in_contact_.size(), 1) {}
+
+template <class Real>
+void Passes<Real>::tilting(bool tilting) {
+  tilting_ = tilting;
+  kernels_ = tilting ? &sets_.tilting_contact : &sets_.contact;
+}
+
+/// Adds kernel(first node, number of nodes, stretch) up over the rows' parts within a block; places matter, and rows
+/// with them, only to bodies that may tilt.
+template <class Real>
+template <class Totals, class Kernel>
+void Passes<Real>::over_stretches(std::int64_t first, std::int64_t n, Totals& totals, const Kernel& kernel) const {
+  if (!tilting_) {
+    combine(totals, in_plane(kernel(first, static_cast<std::size_t>(n), Stretch{}), 0));
+    return;
+  }
+  const Grid& grid = placed_.grid;
+  for (const std::int64_t last = first + n; first < last;) {
+    const std::int64_t j = first / grid.nx, i = first % grid.nx;
+    const std::int64_t length = std::min(grid.nx - i, last - first);
+    const Stretch stretch{placed_.x + static_cast<double>(i) * grid.dx, placed_.y + static_cast<double>(j) * grid.dy,
+                          grid.dx};
+    combine(totals, in_plane(kernel(first, static_cast<std::size_t>(length), stretch), stretch.y));
+    first += length;
+  }
+}
+
+/// Adds body(totals, first node, number of nodes, block) up.
+template <class Real>
+template <class Totals, class Body>
+Totals Passes<Real>::over_blocks(const Body& body) {
+  return ordered_sum<Totals>(
+      arena_, nodes_, kChunk, [](Totals& total, const Totals& part) { combine(total, part); },
+      [&](std::int64_t begin, std::int64_t end) {
+        Totals chunk{};
+        for (std::int64_t first = begin; first < end; first += kBlock) {
+          body(chunk, first, std::min(kBlock, end - first), static_cast<std::size_t>(first / kBlock));
+        }
+        return chunk;
+      });
 }
 
 template <class Real>
-simd::ResidualSums Passes<Real>::residual(double approach, double seed, double* p, const double* g, Real* z) {
-  return over_blocks<simd::ResidualSums>(kCombine, [&](std::int64_t i, std::size_t n, std::size_t block) {
-    simd::ResidualSums part;
-    kernels_.residual(n, approach, seed, p + i, g + i, z + i, &part);
-    in_contact_[block] = part.active > 0 ? 1 : 0;
-    return part;
+AdvanceTotals Passes<Real>::advance(double step, double* p, const Real* v, double* g, const Real* q) {
+  return over_blocks<AdvanceTotals>([&](AdvanceTotals& totals, std::int64_t first, std::int64_t count, std::size_t) {
+    over_stretches(first, count, totals, [&](std::int64_t i, std::size_t n, const Stretch& stretch) {
+      simd::AdvanceSums part;
+      kernels_->advance(n, stretch.places(), step, p + i, v + i, g + i, q + i, &part);
+      return part;
+    });
   });
 }
 
 template <class Real>
-simd::DirectionSums Passes<Real>::correlate(const double* p, const Real* z, const Real* v, const Real* q) {
-  return over_blocks<simd::DirectionSums>(kCombine, [&](std::int64_t i, std::size_t n, std::size_t block) {
-    simd::DirectionSums part;
-    if (in_contact_[block] != 0) kernels_.correlate(n, p + i, z + i, v + i, q + i, &part);
-    return part;
-  });
+simd::ResidualSums Passes<Real>::residual(const LinearTrend& approach, double seed, double* p, const double* g,
+                                          Real* z) {
+  return over_blocks<simd::ResidualSums>(
+      [&](simd::ResidualSums& totals, std::int64_t first, std::int64_t count, std::size_t block) {
+        const double before = totals.active;
+        over_stretches(first, count, totals, [&](std::int64_t i, std::size_t n, const Stretch& stretch) {
+          simd::ResidualSums part;
+          kernels_->residual(n, stretch.of(approach), seed, p + i, g + i, z + i, &part);
+          return part;
+        });
+        in_contact_[block] = totals.active > before ? 1 : 0;
+      });
 }
 
 template <class Real>
-double Passes<Real>::redirect(double beta, double mean_v, double mean_z, double approach, const double* p,
-                              const double* g, const Real* z, Real* v) {
-  return over_blocks<double>(add, [&](std::int64_t i, std::size_t n, std::size_t block) {
+DirectionTotals Passes<Real>::correlate(const double* p, const Real* z, const Real* v, const Real* q) {
+  return over_blocks<DirectionTotals>(
+      [&](DirectionTotals& totals, std::int64_t first, std::int64_t count, std::size_t block) {
+        if (in_contact_[block] == 0) return;
+        over_stretches(first, count, totals, [&](std::int64_t i, std::size_t n, const Stretch& stretch) {
+          simd::DirectionSums part;
+          kernels_->correlate(n, stretch.places(), p + i, z + i, v + i, q + i, &part);
+          return part;
+        });
+      });
+}
+
+template <class Real>
+double Passes<Real>::redirect(double beta, const LinearTrend& trend_v, const LinearTrend& trend_z,
+                              const LinearTrend& approach, const double* p, const double* g, const Real* z, Real* v) {
+  return over_blocks<double>([&](double& total, std::int64_t first, std::int64_t count, std::size_t block) {
     if (in_contact_[block] != 0) {
       moving_[block] = 1;
-      return kernels_.redirect(n, beta, mean_v, mean_z, approach, p + i, g + i, z + i, v + i);
-    }
-    if (moving_[block] != 0) {
-      std::fill_n(v + i, n, Real(0));
+      over_stretches(first, count, total, [&](std::int64_t i, std::size_t n, const Stretch& stretch) {
+        return kernels_->redirect(n, beta, stretch.of(trend_v), stretch.of(trend_z), stretch.of(approach), p + i,
+                                  g + i, z + i, v + i);
+      });
+    } else if (moving_[block] != 0) {
+      std::fill_n(v + first, count, Real(0));
       moving_[block] = 0;
     }
-    return 0.0;
   });
 }
 
 template <class Real>
 double Passes<Real>::dot(const Real* a, const Real* b) {
-  return over_blocks<double>(add, [&](std::int64_t i, std::size_t n, std::size_t block) {
-    return moving_[block] != 0 ? kernels_.dot(n, a + i, b + i) : 0.0;
+  return over_blocks<double>([&](double& total, std::int64_t first, std::int64_t count, std::size_t block) {
+    if (moving_[block] != 0) total += kernels_->dot(static_cast<std::size_t>(count), a + first, b + first);
   });
 }
 
 template <class Real>
-double Passes<Real>::clip(double factor, double* p) {
-  return over_blocks<double>(
-      add, [&](std::int64_t i, std::size_t n, std::size_t) { return kernels_.clip(n, factor, p + i); });
+PlaneWeights Passes<Real>::carried(const LinearTrend& factor, const double* p) {
+  return over_blocks<PlaneWeights>([&](PlaneWeights& totals, std::int64_t first, std::int64_t count, std::size_t) {
+    over_stretches(first, count, totals, [&](std::int64_t i, std::size_t n, const Stretch& stretch) {
+      return kernels_->carried(n, stretch.places(), stretch.of(factor), p + i);
+    });
+  });
 }
 
 template <class Real>
-simd::RefreshSums Passes<Real>::refresh(const UndeformedGap& h, const double* p, double* g) {
-  return over_blocks<Refreshed>(kCombine,
-                                [&](std::int64_t i, std::size_t n, std::size_t) {
-                                  Refreshed part;
-                                  kernels_.refresh(n, h.scale, h.origin, h.values + i, p + i, g + i, &part.sums);
-                                  return part;
-                                })
-      .sums;
+void Passes<Real>::clip(const LinearTrend& factor, double* p) {
+  over_blocks<double>([&](double& none, std::int64_t first, std::int64_t count, std::size_t) {
+    over_stretches(first, count, none, [&](std::int64_t i, std::size_t n, const Stretch& stretch) {
+      kernels_->clip(n, stretch.of(factor), p + i);
+      return 0.0;
+    });
+  });
+}
+
+template <class Real>
+RefreshTotals Passes<Real>::refresh(const UndeformedGap& h, const double* p, double* g) {
+  return over_blocks<RefreshTotals>([&](RefreshTotals& totals, std::int64_t first, std::int64_t count, std::size_t) {
+    over_stretches(first, count, totals, [&](std::int64_t i, std::size_t n, const Stretch& stretch) {
+      simd::RefreshSums part;
+      kernels_->refresh(n, stretch.places(), h.scale, h.origin, h.values + i, p + i, g + i, &part);
+      return part;
+    });
+  });
 }
 
 template <class Real>
 void Passes<Real>::indicator(const double* p, Real* z) {
   arena_.for_chunks(nodes_, kChunk, [&](std::int64_t begin, std::int64_t end, int) {
-    kernels_.indicator(static_cast<std::size_t>(end - begin), p + begin, z + begin);
+    kernels_->indicator(static_cast<std::size_t>(end - begin), p + begin, z + begin);
   });
 }
 
 template <class Real>
 void Passes<Real>::conductance(const double* p, const Real* z, float* w) {
   arena_.for_chunks(nodes_, kChunk, [&](std::int64_t begin, std::int64_t end, int) {
-    kernels_.conductance(static_cast<std::size_t>(end - begin), p + begin, z + begin, w + begin);
+    kernels_->conductance(static_cast<std::size_t>(end - begin), p + begin, z + begin, w + begin);
   });
 }
 
 template <class Real>
-double Passes<Real>::sum(const double* p, const Real* z) {
-  return correlate(p, z, z, z).z;
-}
-
-template <class Real>
-double Passes<Real>::correct(double mean_z, double* p, const Real* z) {
-  return over_blocks<double>(
-      add, [&](std::int64_t i, std::size_t n, std::size_t) { return kernels_.correct(n, mean_z, p + i, z + i); });
+void Passes<Real>::correct(const LinearTrend& trend_z, double* p, const Real* z) {
+  over_blocks<double>([&](double& none, std::int64_t first, std::int64_t count, std::size_t) {
+    over_stretches(first, count, none, [&](std::int64_t i, std::size_t n, const Stretch& stretch) {
+      kernels_->correct(n, stretch.of(trend_z), p + i, z + i);
+      return 0.0;
+    });
+  });
 }
 
 template class Passes<double>;

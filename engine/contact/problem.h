@@ -2,9 +2,10 @@
 //
 //   p >= 0,   gap + K p − approach >= 0,   p · (gap + K p − approach) = 0
 //
-// with either the approach prescribed, or Σ p (then the approach follows). Everything in this room is free of units:
-// lengths in units of the finest grid's dx, pressures in units of the contact modulus E*, so that a change of units
-// changes nothing.
+// with either the approach prescribed, or Σ p (then the approach follows). The bodies may be tilted against each
+// other: then the approach is linear in the place, approach − sx·x − sy·y, with the slopes prescribed, or following
+// from the point at which the force acts. Everything in this room is free of units: lengths in units of the finest
+// grid's dx, pressures in units of the contact modulus E*, so that a change of units changes nothing.
 #pragma once
 
 #include <cstdint>
@@ -32,6 +33,26 @@ struct UndeformedGap {
 
 enum class Drive : std::int32_t { force, approach };
 
+/// What is prescribed. The slopes are those of the plane sx·x + sy·y that is added to the gap. With moments a force
+/// acts at a point, and the slopes follow; it must lie within the hull of the nodes.
+struct Load {
+  Drive drive = Drive::force;
+  double target = 0;
+  double slope_x = 0, slope_y = 0;  // prescribed; ignored with moments
+  bool moments = false;
+  double force_x = 0, force_y = 0;  // where the force acts; read with moments
+
+  bool tilts() const { return moments || slope_x != 0 || slope_y != 0; }
+};
+
+/// A grid, or part of one, and the place of its first node, in unit lengths from the centre of the whole grid.
+struct PlacedGrid {
+  Grid grid;
+  double x = 0, y = 0;
+
+  static PlacedGrid centred(const Grid& grid) { return {grid, grid.x(0), grid.y(0)}; }
+};
+
 struct Settings {
   double tolerance = 1e-8;             // on the certificate
   std::int32_t max_iterations = 2000;  // on the full grid
@@ -44,7 +65,8 @@ struct Certificate {
   double penetration = 0;      // largest interpenetration / largest displacement
   double complementarity = 0;  // Σ p |deformed gap| / (Σ p · largest displacement)
   double tension = 0;          // displacement that the largest tensile pressure causes / largest displacement
-  double balance = 0;          // |Σ p − prescribed| / prescribed
+  double balance = 0;  // of the force, |Σ p − prescribed| / prescribed, and of its moments, relative to the
+                       // force times half the grid: the worst of them
 
   double worst() const;
 };

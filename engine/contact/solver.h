@@ -11,13 +11,15 @@
 #include "contact/level.h"
 #include "contact/nested_grids.h"
 #include "contact/problem.h"
+#include "contact/rest.h"
 
 namespace brinell::contact {
 
 struct Solution {
   bool converged = false;
-  double approach = 0;  // [m]
-  double total = 0;     // Σ p [E*]
+  double approach = 0;              // [m] at the centre of the grid
+  double slope_x = 0, slope_y = 0;  // of the plane that is added to the gap
+  double total = 0;                 // Σ p [E*]
   Certificate certificate;
   std::int32_t iterations = 0;    // on the full grid
   std::int32_t convolutions = 0;  // on the full grid, the certificate's included
@@ -35,15 +37,16 @@ class Solver {
   Solver(const Resources& resources, const Grid& grid, Boundary boundary, const double* gap, bool mixed_precision);
   ~Solver();
 
-  /// target: Σ p >= 0 [E*], or the approach [m]. Starts from the present pressure. If the observer stops it,
-  /// Status::cancelled is thrown and the state is undefined: restore() it.
-  Solution solve(Drive drive, double target, double tolerance, std::int32_t max_iterations, Observer observer);
+  /// load.target: Σ p >= 0 [E*], or the approach [m] at the centre of the grid; lengths in metres. Starts from the
+  /// present pressure. If the observer stops it, Status::cancelled is thrown and the state is undefined: restore()
+  /// it. Throws Status::no_equilibrium where no contact can carry the load.
+  Solution solve(const Load& load, double tolerance, std::int32_t max_iterations, Observer observer);
 
   /// Pressure [E*] of every node.
   const Buffer<double>& pressure() const { return p_; }
 
   /// Gap of the deformed surfaces before the approach is taken off, both measured from first_touch, in units of dx:
-  /// first_touch + dx·deformed_gap − approach is what is open between them.
+  /// first_touch + dx·deformed_gap + slope_x·x + slope_y·y − approach is what is open between them.
   const Buffer<double>& deformed_gap() const { return g_; }
 
   double first_touch() const { return first_touch_; }  // [m]
@@ -53,6 +56,7 @@ class Solver {
     Buffer<double> pressure;  // [E*]; empty if the bodies are apart
     double total = 0;         // Σ p
     double approach = 0;      // [m]
+    double slope_x = 0, slope_y = 0;
   };
   State state() const;
 
@@ -65,16 +69,27 @@ class Solver {
 
  private:
   template <class Real>
-  Solution solve_nested(Drive drive, double target, double tolerance, std::int32_t max_iterations, Observer observer);
+  Solution solve_nested(const Load& load, double tolerance, std::int32_t max_iterations, Observer observer);
+  template <class Real>
+  Solution solve_robustly(const Load& load, double tolerance, std::int32_t max_iterations, Observer observer);
+  Solution solve_in_precision(const Load& load, double tolerance, std::int32_t max_iterations, Observer observer);
+  Solution solve_tilting_approach(const Load& load, double tolerance, std::int32_t max_iterations, Observer observer);
+  double first_touch_of(const Load& load) const;
+  void check_equilibrium(const Load& load) const;
+  bool has_rest() const;
+  Rest rest_of(const Load& load) const;
+  Load unit(const Load& load) const;
+  Solution in_metres(const LevelResult& result) const;
   const Compliance<double>& full_compliance();
   template <class Real>
   Level<Real>& full_level();
-  bool start_is_close(Drive drive, double target) const;
+  bool start_is_close(const Load& load) const;
   void separate();
   UndeformedGap undeformed(const double* gap) const { return {gap, scale_, first_touch_}; }
 
   Resources resources_;
   Grid grid_;  // unit lengths: dx = 1
+  PlacedGrid placed_;
   Boundary boundary_;
   const double* gap_;
   double scale_;  // metres to unit lengths
@@ -87,6 +102,7 @@ class Solver {
   std::unique_ptr<Level<float>> in_single_;
   double total_ = 0;     // Σ p of the last solution [E*]
   double approach_ = 0;  // of the last solution [m]
+  double slope_x_ = 0, slope_y_ = 0;
 };
 
 }  // namespace brinell::contact

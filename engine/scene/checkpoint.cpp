@@ -13,7 +13,7 @@ namespace brinell::scene {
 namespace {
 
 constexpr char kMagic[8] = {'B', 'R', 'N', 'R', 'U', 'N', '\0', '\0'};
-constexpr std::uint32_t kVersion = 2;  // of the layout below
+constexpr std::uint32_t kVersion = 3;  // of the layout below
 constexpr std::uint32_t kByteOrder = 0x01020304;
 
 [[noreturn]] void damaged(const std::string& why) {
@@ -65,6 +65,7 @@ void members(I& increment, const Visit& visit) {
   visit(increment.contact_nodes);
   visit(increment.normal_force);
   visit(increment.approach);
+  for (auto& value : increment.tilt) visit(value);
   for (auto& value : increment.centre_of_force) visit(value);
   visit(increment.first_touch);
   visit(increment.contact_area);
@@ -124,6 +125,8 @@ std::vector<std::byte> Run::save() const {
     const contact::Solver::State state = solver_->state();
     put(state.total);
     put(state.approach);
+    put(state.slope_x);
+    put(state.slope_y);
     out.put(static_cast<std::uint64_t>(state.pressure.size()));
     out.put_bytes(state.pressure.data(), state.pressure.size() * sizeof(double));
   }
@@ -174,6 +177,8 @@ std::unique_ptr<Run> Run::load(Engine& engine, const Scene& scene, std::span<con
   contact::Solver::State state;
   get(state.total);
   get(state.approach);
+  get(state.slope_x);
+  get(state.slope_y);
   in.get(count);
   if (count != (state.total > 0 ? scene.grid().nodes() : 0)) damaged("its grid is not the scene's");
   state.pressure = Buffer<double>::uninitialised(count);

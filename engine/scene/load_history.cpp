@@ -17,7 +17,7 @@ Position position_of(const std::vector<Step>& steps, std::int32_t n) {
   return position;
 }
 
-Target target_of(const Step& step, std::int32_t increment, const Origin& origin, const Grid& grid) {
+contact::Load load_of(const Step& step, std::int32_t increment, const Origin& origin, const Grid& grid) {
   const bool approach = step.drive == StepDrive::approach;
   const double area =
       step.drive == StepDrive::mean_pressure ? static_cast<double>(grid.nodes()) * grid.cell_area() : 1;
@@ -25,7 +25,18 @@ Target target_of(const Step& step, std::int32_t increment, const Origin& origin,
   const double end = step.target * area;
   const bool last = increment + 1 == step.increments;
   const double part = static_cast<double>(increment + 1) / static_cast<double>(step.increments);
-  return {approach ? contact::Drive::approach : contact::Drive::force, last ? end : begin + (end - begin) * part};
+  contact::Load load;
+  load.drive = approach ? contact::Drive::approach : contact::Drive::force;
+  load.target = last ? end : begin + (end - begin) * part;
+  load.moments = step.free_rotation;
+  if (load.moments) {
+    load.force_x = step.eccentricity[0];
+    load.force_y = step.eccentricity[1];
+  } else {
+    load.slope_x = step.tilt[0];
+    load.slope_y = step.tilt[1];
+  }
+  return load;
 }
 
 }  // namespace brinell::scene

@@ -27,11 +27,8 @@ std::int32_t total_increments(const std::vector<Step>& steps);
 Position position_of(const std::vector<Step>& steps, std::int32_t n);
 
 /// What an increment prescribes: a force [N] or an approach [m]. Steps go from their origin to their target in equal
-/// parts; the last part is the target itself, to the bit.
-struct Target {
-  contact::Drive drive = contact::Drive::force;
-  double value = 0;
-};
-Target target_of(const Step& step, std::int32_t increment, const Origin& origin, const Grid& grid);
+/// parts; the last part is the target itself, to the bit. Where the force acts, or the slopes, are the step's
+/// throughout.
+contact::Load load_of(const Step& step, std::int32_t increment, const Origin& origin, const Grid& grid);
 
 }  // namespace brinell::scene

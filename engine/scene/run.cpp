@@ -90,8 +90,9 @@ const Increment& Run::advance(const Proceed& proceed) {
   if (position.increment == 0 && solved > 0) {
     step_origin_ = {increments_.back().normal_force, increments_.back().approach};
   }
-  const Target target = target_of(scene_.steps()[static_cast<std::size_t>(position.step)], position.increment,
-                                  step_origin_, scene_.grid());
+  contact::Load load = load_of(scene_.steps()[static_cast<std::size_t>(position.step)], position.increment,
+                               step_origin_, scene_.grid());
+  if (load.drive == contact::Drive::force) load.target /= contact_modulus_ * scene_.grid().cell_area();
 
   const contact::Solver::State before = solver_->state();
   const std::size_t traced = trace_.size();
@@ -103,10 +104,7 @@ const Increment& Run::advance(const Proceed& proceed) {
   };
   contact::Solution solution;
   try {
-    const double unit_force = contact_modulus_ * scene_.grid().cell_area();
-    solution =
-        solver_->solve(target.drive, target.drive == contact::Drive::force ? target.value / unit_force : target.value,
-                       scene_.solver().tolerance, scene_.solver().max_iterations, observe);
+    solution = solver_->solve(load, scene_.solver().tolerance, scene_.solver().max_iterations, observe);
   } catch (...) {
     trace_.resize(traced);
     solver_->restore(before);
@@ -192,6 +190,8 @@ Increment Run::summary(const contact::Solution& solution, const Position& positi
   increment.contact_nodes = static_cast<std::int64_t>(sums.nodes);
   increment.normal_force = sums.force * contact_modulus_ * grid.cell_area();
   increment.approach = solution.approach;
+  increment.tilt[0] = solution.slope_x;
+  increment.tilt[1] = solution.slope_y;
   increment.centre_of_force[0] = sums.force > 0 ? sums.moment_x / sums.force : none;
   increment.centre_of_force[1] = sums.force > 0 ? sums.moment_y / sums.force : none;
   increment.first_touch = solver_->first_touch();
@@ -248,13 +248,18 @@ void Run::copy_surface_field(Field field, std::span<double> values) {
   prepare();
   const Buffer<double>& p = solver_->pressure();
   const Buffer<double>& g = solver_->deformed_gap();
-  const double unit = scene_.grid().dx;
+  const Grid& grid = scene_.grid();
+  const double unit = grid.dx;
   const double first_touch = solver_->first_touch();
-  const double approach = increments_.back().approach - first_touch;
+  const Increment& last = increments_.back();
+  const auto plane = [&](std::size_t n) {
+    return last.tilt[0] * grid.x(static_cast<std::int64_t>(n) % grid.nx) +
+           last.tilt[1] * grid.y(static_cast<std::int64_t>(n) / grid.nx);
+  };
   for (std::size_t n = 0; n < gap_.size(); ++n) {
     switch (field) {
       case Field::pressure: values[n] = p[n] * contact_modulus_; break;
-      case Field::gap: values[n] = g[n] * unit - approach; break;
+      case Field::gap: values[n] = g[n] * unit - (last.approach - first_touch) + plane(n); break;
       case Field::displacement: values[n] = g[n] * unit - (gap_[n] - first_touch); break;
       default: break;
     }

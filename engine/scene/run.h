@@ -27,6 +27,7 @@ struct Increment {
   std::int64_t contact_nodes = 0;
   double normal_force = 0;             // [N]
   double approach = 0;                 // [m]
+  double tilt[2] = {0, 0};             // slopes of the plane that is added to the gap
   double centre_of_force[2] = {0, 0};  // [m]
   double first_touch = 0;              // [m]
   double contact_area = 0;             // [m²]

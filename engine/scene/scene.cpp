@@ -163,6 +163,12 @@ void Scene::add(const Step& step) {
   require(step.drive == StepDrive::approach || step.target >= 0, Status::invalid_argument,
           std::string(name) + " = " + text(step.target) + (step.drive == StepDrive::force ? " N" : " Pa") +
               ": must not be negative: bodies press on each other, they do not stick");
+  for (const double slope : step.tilt) {
+    require(std::isfinite(slope), Status::invalid_argument, "tilt = " + text(slope) + " rad: must be finite");
+  }
+  for (const double place : step.eccentricity) {
+    require(std::isfinite(place), Status::invalid_argument, "eccentricity = " + text(place) + " m: must be finite");
+  }
   for (const double ratio : step.traction_ratio) {
     require(std::isfinite(ratio), Status::invalid_argument, "traction_ratio = " + text(ratio) + ": must be finite");
   }
@@ -207,12 +213,31 @@ void Scene::check_complete() const {
     require(
         steps_[n].drive != StepDrive::mean_pressure || boundary_ == Boundary::periodic, Status::invalid_scene,
         "step " + std::to_string(n) + ": mean_pressure needs a periodic boundary; prescribe normal_force instead");
+    check_rotation(n);
   }
   for (const Which which : {Which::lower, Which::upper}) {
     const std::string label = which == Which::lower ? "lower" : "upper";
     require(!subsurface_.wants(which) || !body(which).rigid, Status::invalid_scene,
             "the stress below the " + label + " body's surface is asked for, but that body is rigid: give it " +
                 "youngs_modulus and poissons_ratio, or ask for the other body's");
+  }
+}
+
+/// Of step n.
+void Scene::check_rotation(std::size_t n) const {
+  const Step& step = steps_[n];
+  if (!step.free_rotation && step.tilt[0] == 0 && step.tilt[1] == 0) return;
+  const char* name = step.free_rotation ? "eccentricity" : "tilt";
+  require(boundary_ == Boundary::free, Status::invalid_scene,
+          "step " + std::to_string(n) + ": " + name +
+              " needs a free boundary: on a periodic one a plane has no slope; leave it out");
+  if (!step.free_rotation) return;
+  const double last[2] = {grid_.x(grid_.nx - 1), grid_.y(grid_.ny - 1)};
+  for (int k = 0; k < 2; ++k) {
+    require(std::fabs(step.eccentricity[k]) <= last[k], Status::invalid_scene,
+            "step " + std::to_string(n) + ": eccentricity = [" + text(step.eccentricity[0]) + ", " +
+                text(step.eccentricity[1]) + "] m lies outside the grid, whose last nodes are at [" + text(last[0]) +
+                ", " + text(last[1]) + "] m: no contact can carry such a force");
   }
 }
 
@@ -233,6 +258,8 @@ std::uint64_t Scene::fingerprint() const {
     f.add(step.increments);
     f.add(step.target);
     for (const double ratio : step.traction_ratio) f.add(ratio);
+    f.add(step.free_rotation);
+    for (const double value : step.free_rotation ? step.eccentricity : step.tilt) f.add(value);
   }
   f.add(solver_.tolerance);
   f.add(solver_.max_iterations);

@@ -36,6 +36,9 @@ struct Step {
   StepDrive drive = StepDrive::none;
   std::int32_t increments = 1;
   double target = 0;                  // [N], [m] or [Pa]
+  bool free_rotation = false;         // the slopes follow from where the force acts
+  double eccentricity[2] = {0, 0};    // where that is [m]; read with free_rotation
+  double tilt[2] = {0, 0};            // slopes of the plane that is added to the gap; read without
   double traction_ratio[2] = {0, 0};  // full sliding: shear along x, y on the lower body / pressure
 };
 
@@ -86,6 +89,8 @@ class Scene {
   std::uint64_t fingerprint() const;
 
  private:
+  void check_rotation(std::size_t n) const;
+
   Grid grid_;
   Boundary boundary_ = Boundary::free;
   Body bodies_[2];

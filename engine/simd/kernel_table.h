@@ -16,6 +16,7 @@ namespace brinell::simd {
 template <class Real>
 struct RealKernels {
   ContactKernels<Real> contact;
+  ContactKernels<Real> tilting_contact;  // of bodies that may tilt
   TransformKernels<Real> transform;
 };
 

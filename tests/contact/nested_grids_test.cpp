@@ -14,10 +14,10 @@ TEST(NestedGrids, halve_down_to_the_coarsest_and_keep_means) {
   const parallel::Arena arena(1);
   const Grid grid{200, 136, 1, 2};
   const std::vector<double> gap = support::random_gap(grid, 1, 1);
-  const auto coarser = coarser_grids(grid, Boundary::free, gap, arena);
+  const auto coarser = coarser_grids(PlacedGrid::centred(grid), Boundary::free, gap, arena);
   ASSERT_EQ(coarser.size(), 2U);
-  EXPECT_EQ(coarser[0].grid, (Grid{100, 68, 2, 4}));
-  EXPECT_EQ(coarser[1].grid, (Grid{50, 34, 4, 8}));
+  EXPECT_EQ(coarser[0].placed.grid, (Grid{100, 68, 2, 4}));
+  EXPECT_EQ(coarser[1].placed.grid, (Grid{50, 34, 4, 8}));
   EXPECT_EQ(coarser[0].gap[3 * 100 + 5],
             0.25 * ((gap[6 * 200 + 10] + gap[6 * 200 + 11]) + (gap[7 * 200 + 10] + gap[7 * 200 + 11])));
   EXPECT_EQ(coarser_grids_bytes(grid, Boundary::free), coarser[0].gap.bytes() + coarser[1].gap.bytes());
@@ -27,13 +27,14 @@ TEST(NestedGrids, of_odd_sizes_exist_on_free_boundaries_only) {
   const parallel::Arena arena(1);
   const Grid grid{129, 64, 1, 1};
   const std::vector<double> gap = support::random_gap(grid, 1, 1);
-  EXPECT_TRUE(coarser_grids(grid, Boundary::periodic, gap, arena).empty());
-  const auto coarser = coarser_grids(grid, Boundary::free, gap, arena);
+  EXPECT_TRUE(coarser_grids(PlacedGrid::centred(grid), Boundary::periodic, gap, arena).empty());
+  const auto coarser = coarser_grids(PlacedGrid::centred(grid), Boundary::free, gap, arena);
   ASSERT_EQ(coarser.size(), 1U);
-  EXPECT_EQ(coarser[0].grid.nx, 65);
+  EXPECT_EQ(coarser[0].placed.grid.nx, 65);
   EXPECT_EQ(coarser[0].gap[64],
             0.25 * ((gap[128] + gap[128]) + (gap[257] + gap[257])));  // the last column stands alone
-  EXPECT_TRUE(coarser_grids({63, 1000, 1, 1}, Boundary::free, std::vector<double>(63000), arena).empty());
+  EXPECT_TRUE(coarser_grids(PlacedGrid::centred({63, 1000, 1, 1}), Boundary::free, std::vector<double>(63000), arena)
+                  .empty());
 }
 
 TEST(ContactBox, is_the_smallest_around_all_contact) {

@@ -73,7 +73,7 @@ TYPED_TEST(PreconditionerIn, is_symmetric_and_positive_definite) {
         const Nodes nodes = nodes_of(p);
         fft::Workspace<Real> workspace;
         Preconditioner<Real> preconditioner(bench.resources, grid, boundary, workspace);
-        Passes<Real> passes(bench.arena, bench.resources.backend.kernels, grid.nodes());
+        Passes<Real> passes(bench.arena, bench.resources.backend.kernels, PlacedGrid::centred(grid));
         Buffer<Real> scratch(grid.nodes());
         for (const bool large_scales : {true, false}) {
           preconditioner.treat_large_scales(large_scales);
@@ -104,7 +104,7 @@ TEST(Preconditioner, times_the_compliance_is_well_conditioned) {
     const Nodes nodes = nodes_of(p);
     fft::Workspace<double> workspace;
     Preconditioner<double> preconditioner(bench.resources, grid, Boundary::free, workspace);
-    Passes<double> passes(bench.arena, bench.resources.backend.kernels, grid.nodes());
+    Passes<double> passes(bench.arena, bench.resources.backend.kernels, PlacedGrid::centred(grid));
     Buffer<double> scratch(grid.nodes());
     preconditioner.adapt(passes, p.data(), scratch.data());
     const Eigen::MatrixXd inverse = matrix_of(preconditioner, nodes, grid.nodes());

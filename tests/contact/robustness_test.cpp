@@ -216,10 +216,10 @@ TEST(Contact, is_the_same_in_any_unit_of_length) {
                   exact ? 0 : 1e2 * kTight * reference.largest());
         EXPECT_NEAR(pressed.solution.approach / unit, reference.solution.approach, exact ? 0 : 10 * kTight);
         Request again = by_approach;
-        again.target *= unit;
+        again.load.target *= unit;
         const Pressed back = press(bench, scaled_grid, boundary, scaled, again, mixed);
         expect_certified(back, kTight);
-        EXPECT_NEAR(back.solution.total, by_force.target, 1e3 * kTight * by_force.target);
+        EXPECT_NEAR(back.solution.total, by_force.load.target, 1e3 * kTight * by_force.load.target);
       }
     }
   }
@@ -238,10 +238,11 @@ TEST(Contact, below_first_touch_is_none) {
         Request{Drive::force, 3}, Request{Drive::force, 0}, Request{Drive::approach, 0.6}}) {
     const Solution solution = solve(solver, request);
     EXPECT_TRUE(solution.converged);
-    const bool touches = request.drive == Drive::force ? request.target > 0 : request.target > least(gap);
+    const bool touches =
+        request.load.drive == Drive::force ? request.load.target > 0 : request.load.target > least(gap);
     EXPECT_EQ(solution.total > 0, touches);
-    if (request.drive == Drive::approach) {
-      EXPECT_EQ(solution.approach, request.target);
+    if (request.load.drive == Drive::approach) {
+      EXPECT_EQ(solution.approach, request.load.target);
     }
     if (touches) continue;
     for (std::size_t n = 0; n < gap.size(); ++n) {

@@ -62,15 +62,15 @@ TEST(Solver, gives_the_same_bits_on_any_number_of_threads) {
 std::atomic<int> calls_in_double{0}, calls_in_single{0};
 const simd::KernelTable* watched = nullptr;
 
-void counted_in_double(std::size_t n, double step, double* p, const double* v, double* g, const double* q,
-                       simd::AdvanceSums* sums) {
+void counted_in_double(std::size_t n, simd::Line x, double step, double* p, const double* v, double* g,
+                       const double* q, simd::AdvanceSums* sums) {
   ++calls_in_double;
-  watched->in_double.contact.advance(n, step, p, v, g, q, sums);
+  watched->in_double.contact.advance(n, x, step, p, v, g, q, sums);
 }
-void counted_in_single(std::size_t n, double step, double* p, const float* v, double* g, const float* q,
+void counted_in_single(std::size_t n, simd::Line x, double step, double* p, const float* v, double* g, const float* q,
                        simd::AdvanceSums* sums) {
   ++calls_in_single;
-  watched->in_single.contact.advance(n, step, p, v, g, q, sums);
+  watched->in_single.contact.advance(n, x, step, p, v, g, q, sums);
 }
 
 TEST(Solver, runs_the_kernels_of_its_instruction_set_and_agrees_with_the_others) {

@@ -49,7 +49,7 @@ TEST(WarmStart, of_the_same_target_is_certified_again) {
     EXPECT_LE(largest_difference(before.pressure, after.pressure), 1e-7 * before.largest());
     // By sums of its own: the certificate of the second is not a copy of the first's.
     const Certificate expected = support::certificate_by_sums(grid, Boundary::free, gap, after.pressure,
-                                                              second.approach, Drive::force, request.target);
+                                                              second.approach, Drive::force, request.load.target);
     EXPECT_NEAR(second.certificate.penetration, expected.penetration, 1e-13);
     EXPECT_NEAR(second.certificate.complementarity, expected.complementarity, 1e-13);
   }
@@ -109,7 +109,7 @@ TEST(WarmStart, restores_the_bits_of_an_uninterrupted_history) {
       resumed.restore(whole.state());
       const Pressed expected = state_of(whole, solve(whole, request), grid.dx);
       const Pressed pressed = state_of(resumed, solve(resumed, request), grid.dx);
-      EXPECT_EQ(pressed.pressure, expected.pressure) << request.target;
+      EXPECT_EQ(pressed.pressure, expected.pressure) << request.load.target;
       EXPECT_EQ(pressed.solution.approach, expected.solution.approach);
     }
   }
@@ -128,8 +128,7 @@ TEST(Contact, cancelled_by_its_observer_can_be_restored_and_continued) {
     solver.restore(saved);
     int count = 0;
     try {
-      solver.solve(request.drive, request.target, request.tolerance, 500,
-                   [&](const Report&) { return ++count < stop; });
+      solver.solve(request.load, request.tolerance, 500, [&](const Report&) { return ++count < stop; });
       FAIL() << "not stopped";
     } catch (const Error& error) {
       EXPECT_EQ(error.status(), Status::cancelled);

@@ -78,8 +78,13 @@ struct Pressed {
 };
 
 struct Request {
-  contact::Drive drive = contact::Drive::force;
-  double target = 0;  // Σ p [E*], or approach [m]
+  Request() = default;
+  Request(contact::Drive drive, double target, double certificate = 1e-10, std::int32_t iterations = 500)
+      : Request(contact::Load{drive, target}, certificate, iterations) {}
+  Request(const contact::Load& wanted, double certificate = 1e-10, std::int32_t iterations = 500)
+      : load(wanted), tolerance(certificate), max_iterations(iterations) {}
+
+  contact::Load load;  // Σ p [E*], or approach [m]
   double tolerance = 1e-10;
   std::int32_t max_iterations = 500;
 };
@@ -92,7 +97,7 @@ inline Pressed state_of(const contact::Solver& solver, const contact::Solution& 
 }
 
 inline contact::Solution solve(contact::Solver& solver, const Request& request) {
-  return solver.solve(request.drive, request.target, request.tolerance, request.max_iterations,
+  return solver.solve(request.load, request.tolerance, request.max_iterations,
                       [](const contact::Report&) { return true; });
 }
 

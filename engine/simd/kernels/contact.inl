@@ -3,18 +3,27 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 
 #include "simd/contact_kernels.h"
 
 namespace brinell::simd {
 namespace {
 
-template <class Arch, class Real>
+template <class Arch, class Real, bool kTilts>
 struct ContactPasses {
-  static void advance(std::size_t n, double step, double* __restrict p, const Real* __restrict v,
+  static double at(Line line, std::size_t i) {
+    if constexpr (kTilts) {
+      return line.value + line.slope * static_cast<double>(static_cast<std::int32_t>(i));
+    } else {
+      return line.value;
+    }
+  }
+
+  static void advance(std::size_t n, Line x, double step, double* __restrict p, const Real* __restrict v,
                       double* __restrict g, const Real* __restrict q, AdvanceSums* sums) {
-    double active = 0, load = 0, gap = 0, min_gap = HUGE_VAL, min_pressure = 0;
-#pragma omp simd reduction(+ : active, load, gap) reduction(min : min_gap, min_pressure)
+    double active = 0, load = 0, load_x = 0, load_xx = 0, gap = 0, gap_x = 0, min_pressure = 0;
+#pragma omp simd reduction(+ : active, load, load_x, load_xx, gap, gap_x) reduction(min : min_pressure)
     for (std::size_t i = 0; i < n; ++i) {
       const double pressure = p[i] + step * static_cast<double>(v[i]);
       const double deformed = g[i] + step * static_cast<double>(q[i]);
@@ -24,18 +33,23 @@ struct ContactPasses {
       const double carried = pressure > 0 ? pressure : 0.0;
       load += carried;
       gap += carried * deformed;
-      min_gap = deformed < min_gap ? deformed : min_gap;
+      if constexpr (kTilts) {
+        const double moment = carried * at(x, i);
+        load_x += moment;
+        load_xx += moment * at(x, i);
+        gap_x += moment * deformed;
+      }
       min_pressure = pressure < min_pressure ? pressure : min_pressure;
     }
-    *sums = {active, load, gap, min_gap, -min_pressure};
+    *sums = {active, {load, load_x, load_xx}, {gap, gap_x}, -min_pressure};
   }
 
-  static void residual(std::size_t n, double approach, double seed, double* __restrict p, const double* __restrict g,
+  static void residual(std::size_t n, Line approach, double seed, double* __restrict p, const double* __restrict g,
                        Real* __restrict z, ResidualSums* sums) {
-    double active = 0, entered = 0, complementarity = 0, barred = 0;
-#pragma omp simd reduction(+ : active, entered, complementarity) reduction(max : barred)
+    double active = 0, entered = 0, complementarity = 0, barred = 0, deepest = 0;
+#pragma omp simd reduction(+ : active, entered, complementarity) reduction(max : barred, deepest)
     for (std::size_t i = 0; i < n; ++i) {
-      const double r = g[i] - approach;
+      const double r = g[i] - at(approach, i);
       const double before = p[i];
       const double enters = (before == 0 ? 1.0 : 0.0) * (r < 0 ? 1.0 : 0.0);
       const double pressure = enters != 0 ? seed : before;
@@ -43,41 +57,54 @@ struct ContactPasses {
       entered += enters;
       active += pressure > 0 ? 1.0 : 0.0;
       complementarity += std::fabs(pressure * r);
-      const double depth = before < 0 ? -r : 0.0;
-      barred = depth > barred ? depth : barred;
+      const double depth = -r;
+      deepest = depth > deepest ? depth : deepest;
+      const double held = before < 0 ? depth : 0.0;
+      barred = held > barred ? held : barred;
       z[i] = static_cast<Real>(pressure > 0 ? r : 0.0);
     }
-    *sums = {active, entered, complementarity, barred};
+    *sums = {active, entered, complementarity, barred, deepest};
   }
 
-  static void correlate(std::size_t n, const double* __restrict p, const Real* __restrict z, const Real* __restrict v,
-                        const Real* __restrict q, DirectionSums* sums) {
-    double sz = 0, sq = 0, sv = 0, zq = 0, vq = 0;
-#pragma omp simd reduction(+ : sz, sq, sv, zq, vq)
+  static void correlate(std::size_t n, Line x, const double* __restrict p, const Real* __restrict z,
+                        const Real* __restrict v, const Real* __restrict q, DirectionSums* sums) {
+    double active = 0, active_x = 0, active_xx = 0, sz = 0, sz_x = 0, sq = 0, sq_x = 0, sv = 0, sv_x = 0, zq = 0,
+           vq = 0;
+#pragma omp simd reduction(+ : active, active_x, active_xx, sz, sz_x, sq, sq_x, sv, sv_x, zq, vq)
     for (std::size_t i = 0; i < n; ++i) {
       const double on = p[i] > 0 ? 1.0 : 0.0;
       const double zi = on * static_cast<double>(z[i]);
       const double vi = on * static_cast<double>(v[i]);
       const double qi = static_cast<double>(q[i]);
+      active += on;
       sz += zi;
       sv += vi;
       sq += on * qi;
       zq += zi * qi;
       vq += vi * qi;
+      if constexpr (kTilts) {
+        const double xi = at(x, i);
+        active_x += on * xi;
+        active_xx += on * xi * xi;
+        sz_x += zi * xi;
+        sv_x += vi * xi;
+        sq_x += on * qi * xi;
+      }
     }
-    *sums = {sz, sq, sv, zq, vq};
+    *sums = {{active, active_x, active_xx}, {sz, sz_x}, {sq, sq_x}, {sv, sv_x}, zq, vq};
   }
 
-  static double redirect(std::size_t n, double beta, double mean_v, double mean_z, double approach,
+  static double redirect(std::size_t n, double beta, Line trend_v, Line trend_z, Line approach,
                          const double* __restrict p, const double* __restrict g, const Real* __restrict z,
                          Real* __restrict v) {
     double slope = 0;
 #pragma omp simd reduction(+ : slope)
     for (std::size_t i = 0; i < n; ++i) {
-      const double along = beta * (static_cast<double>(v[i]) - mean_v) - (static_cast<double>(z[i]) - mean_z);
+      const double along =
+          beta * (static_cast<double>(v[i]) - at(trend_v, i)) - (static_cast<double>(z[i]) - at(trend_z, i));
       const Real direction = static_cast<Real>(p[i] > 0 ? along : 0.0);
       v[i] = direction;
-      slope += static_cast<double>(direction) * (g[i] - approach);
+      slope += static_cast<double>(direction) * (g[i] - at(approach, i));
     }
     return slope;
   }
@@ -89,21 +116,33 @@ struct ContactPasses {
     return sum;
   }
 
-  static double clip(std::size_t n, double factor, double* __restrict p) {
-    double sum = 0;
-#pragma omp simd reduction(+ : sum)
+  static QuadraticSums carried(std::size_t n, Line x, Line factor, const double* __restrict p) {
+    double load = 0, load_x = 0, load_xx = 0;
+#pragma omp simd reduction(+ : load, load_x, load_xx)
     for (std::size_t i = 0; i < n; ++i) {
-      const double pressure = p[i] > 0 ? p[i] * factor : 0.0;
-      p[i] = pressure;
-      sum += pressure;
+      const double pressure = p[i] > 0 ? p[i] : 0.0;
+      const double carried = at(factor, i) > 0 ? pressure : 0.0;
+      load += carried;
+      if constexpr (kTilts) {
+        const double moment = carried * at(x, i);
+        load_x += moment;
+        load_xx += moment * at(x, i);
+      }
     }
-    return sum;
+    return {load, load_x, load_xx};
   }
 
-  static void refresh(std::size_t n, double scale, double origin, const double* __restrict h,
+  static void clip(std::size_t n, Line factor, double* __restrict p) {
+    for (std::size_t i = 0; i < n; ++i) {
+      const double scale = at(factor, i) > 0 ? at(factor, i) : 0.0;
+      p[i] = p[i] > 0 ? p[i] * scale : 0.0;
+    }
+  }
+
+  static void refresh(std::size_t n, Line x, double scale, double origin, const double* __restrict h,
                       const double* __restrict p, double* __restrict g, RefreshSums* sums) {
-    double active = 0, load = 0, gap = 0, min_gap = HUGE_VAL, displacement = 0, energy = 0;
-#pragma omp simd reduction(+ : active, load, gap, energy) reduction(min : min_gap) reduction(max : displacement)
+    double active = 0, load = 0, load_x = 0, load_xx = 0, gap = 0, gap_x = 0, displacement = 0, energy = 0;
+#pragma omp simd reduction(+ : active, load, load_x, load_xx, gap, gap_x, energy) reduction(max : displacement)
     for (std::size_t i = 0; i < n; ++i) {
       const double u = g[i];
       const double undeformed = scale * (h[i] - origin);
@@ -114,11 +153,16 @@ struct ContactPasses {
       const double carried = p[i] > 0 ? p[i] : 0.0;
       load += carried;
       gap += carried * deformed;
-      min_gap = deformed < min_gap ? deformed : min_gap;
+      if constexpr (kTilts) {
+        const double moment = carried * at(x, i);
+        load_x += moment;
+        load_xx += moment * at(x, i);
+        gap_x += moment * deformed;
+      }
       displacement = magnitude > displacement ? magnitude : displacement;
       energy += p[i] * (0.5 * u + undeformed);
     }
-    *sums = {active, load, gap, min_gap, displacement, energy};
+    *sums = {active, {load, load_x, load_xx}, {gap, gap_x}, displacement, energy};
   }
 
   static void indicator(std::size_t n, const double* __restrict p, Real* __restrict z) {
@@ -143,25 +187,21 @@ struct ContactPasses {
     for (std::size_t i = 0; i < n; ++i) z[i] -= static_cast<Real>(t) * static_cast<Real>(w[i]);
   }
 
-  static double correct(std::size_t n, double mean_z, double* __restrict p, const Real* __restrict z) {
-    double sum = 0;
-#pragma omp simd reduction(+ : sum)
+  static void correct(std::size_t n, Line trend_z, double* __restrict p, const Real* __restrict z) {
     for (std::size_t i = 0; i < n; ++i) {
-      const double relaxed = p[i] - (static_cast<double>(z[i]) - mean_z);
+      const double relaxed = p[i] - (static_cast<double>(z[i]) - at(trend_z, i));
       const double kept = relaxed > 0 ? relaxed : 0.0;
-      const double pressure = p[i] > 0 ? kept : 0.0;
-      p[i] = pressure;
-      sum += pressure;
+      p[i] = p[i] > 0 ? kept : 0.0;
     }
-    return sum;
   }
 };
 
-template <class Arch, class Real>
+template <class Arch, class Real, bool kTilts>
 constexpr ContactKernels<Real> contact_kernels() {
-  using Passes = ContactPasses<Arch, Real>;
-  return {Passes::advance, Passes::residual,  Passes::correlate,   Passes::redirect, Passes::dot,   Passes::clip,
-          Passes::refresh, Passes::indicator, Passes::conductance, Passes::weigh,    Passes::relax, Passes::correct};
+  using Passes = ContactPasses<Arch, Real, kTilts>;
+  return {Passes::advance, Passes::residual, Passes::correlate, Passes::redirect,  Passes::dot,
+          Passes::carried, Passes::clip,     Passes::refresh,   Passes::indicator, Passes::conductance,
+          Passes::weigh,   Passes::relax,    Passes::correct};
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace {
 
 template <class Arch, class Real>
 constexpr RealKernels<Real> make_real_kernels() {
-  return {contact_kernels<Arch, Real>(), transform_kernels<Arch, Real>()};
+  return {contact_kernels<Arch, Real, false>(), contact_kernels<Arch, Real, true>(), transform_kernels<Arch, Real>()};
 }
 
 template <class Arch>
