@@ -140,7 +140,7 @@ double solver_passes(scene::Engine& engine) {
   contact::Passes<double> passes(engine.arena(), engine.kernels(), contact::PlacedGrid::centred({n, n, 1, 1}));
   const contact::LinearTrend approach{0.5, 0, 0};
   return time_of(engine, 2, [&] {
-    passes.residual(approach, 1e-30, p.data(), g.data(), z.data());
+    passes.residual(approach, 0, 1e-30, p.data(), g.data(), z.data());
     passes.correlate(p.data(), z.data(), v.data(), q.data());
     passes.redirect(0.5, {}, {}, approach, p.data(), g.data(), z.data(), v.data());
     passes.dot(v.data(), q.data());

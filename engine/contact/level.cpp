@@ -13,6 +13,9 @@ namespace {
 
 // A node that enters the contact gets this fraction of the mean pressure: in contact, but without effect.
 constexpr double kSeed = 1e-30;
+// A node enters the contact when it penetrates by more than this fraction of the mean error in contact, weighted by
+// the pressure; less may be that error alone, and go with it.
+constexpr double kEnterBeyond = 0.5;
 // Tension is clipped when the displacement that it could cause exceeds this fraction of the present error.
 constexpr double kTensionToError = 0.2;
 // Errors above this are all the same: the set of nodes in contact is not yet known.
@@ -20,7 +23,7 @@ constexpr double kLargeError = 0.05;
 // The preconditioner follows the contact when this fraction of its nodes has changed.
 constexpr double kAdaptAfter = 0.02;
 // Conjugacy is given up when one iteration changes this fraction of the nodes in contact.
-constexpr double kRestartAfter = 0.05;
+constexpr double kRestartAfter = 0.1;
 // Rises of the energy, each after a fresh convolution, until a part of the preconditioner is given up.
 constexpr int kRises = 3;
 // Iterations without a better certificate until the level is given up: round-off has been reached.
@@ -162,7 +165,7 @@ void Level<Real>::correct_start(const Load& load) {
   const RefreshTotals start = passes_.refresh(gap_, fields_.p, fields_.g);
   if (start.active == 0) return;
   approach_ = fit(freedom_, start.load, start.gap, approach_, kOnePoint);
-  passes_.residual(approach_, 0, fields_.p, fields_.g, z_.data());
+  passes_.residual(approach_, 0, 0, fields_.p, fields_.g, z_.data());
   preconditioner_.apply_local(z_.data());
   const DirectionTotals sums = passes_.correlate(fields_.p, z_.data(), z_.data(), z_.data());
   passes_.correct(fit(freedom_, sums.active, sums.z, {}, kOnePoint), fields_.p, z_.data());
@@ -188,14 +191,16 @@ LevelResult Level<Real>::solve(const Load& load, double tolerance, std::int32_t 
   double best = std::numeric_limits<double>::infinity();
   double fresh_error = best;  // as of the last fresh convolution
   double in_contact = sums_.active;
+  double noise = 0;  // penetration that does not count
 
   while (true) {
     if (sums_.load.one > 0) approach_ = fit(freedom_, sums_.load, sums_.gap, approach_, kOnePoint);
     const double seed = kSeed * std::max(pressure_.one / nodes, std::numeric_limits<double>::min() / kSeed);
-    simd::ResidualSums residual = passes_.residual(approach_, seed, fields_.p, fields_.g, z_.data());
+    simd::ResidualSums residual = passes_.residual(approach_, noise, seed, fields_.p, fields_.g, z_.data());
     changed += residual.entered + std::max(0.0, in_contact - sums_.active);
     in_contact = residual.active;
 
+    if (pressure_.one > 0) noise = kEnterBeyond * residual.complementarity / pressure_.one;
     const Certificate certificate = estimate(residual);
     if (!observer({placed_.grid, result.iterations, fresh, certificate.worst()})) {
       fail(Status::cancelled, "the progress callback asked to stop");
@@ -238,7 +243,7 @@ LevelResult Level<Real>::solve(const Load& load, double tolerance, std::int32_t 
     since_adapted += changed;
     if (preconditioned && (!adapted || since_adapted > kAdaptAfter * in_contact)) {
       preconditioner_.adapt(passes_, fields_.p, z_.data());
-      residual = passes_.residual(approach_, seed, fields_.p, fields_.g, z_.data());
+      residual = passes_.residual(approach_, noise, seed, fields_.p, fields_.g, z_.data());
       adapted = true;
       since_adapted = 0;
     }

@@ -12,11 +12,12 @@
 //   v = −z + β v,   β = z·q / v·q,   q = K v_old
 //   p += α v, gap += α K v,   α = −r·v / v·K v
 //
-// Nodes with a negative deformed gap enter at once. Nodes whose pressure turns negative leave, but keep that tension
-// until it matters: taking it out changes the displacement everywhere, which costs another convolution. It is
-// clipped, and the displacement recomputed, when it could cause a displacement comparable to the present error, and
-// always before convergence is declared: the certificate that is reported comes from a fresh convolution. What was
-// clipped is made up for by a factor on the pressure, linear in the place where moments are prescribed.
+// Nodes with a negative deformed gap enter, as soon as that exceeds the error in contact. Nodes whose pressure turns
+// negative leave, but keep that tension until it matters: taking it out changes the displacement everywhere, which
+// costs another convolution. It is clipped, and the displacement recomputed, when it could cause a displacement
+// comparable to the present error, and always before convergence is declared: the certificate that is reported comes
+// from a fresh convolution. What was clipped is made up for by a factor on the pressure, linear in the place where
+// moments are prescribed.
 #pragma once
 
 #include <cstddef>

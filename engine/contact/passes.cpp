@@ -160,14 +160,14 @@ AdvanceTotals Passes<Real>::advance(double step, double* p, const Real* v, doubl
 }
 
 template <class Real>
-simd::ResidualSums Passes<Real>::residual(const LinearTrend& approach, double seed, double* p, const double* g,
-                                          Real* z) {
+simd::ResidualSums Passes<Real>::residual(const LinearTrend& approach, double noise, double seed, double* p,
+                                          const double* g, Real* z) {
   return over_blocks<simd::ResidualSums>(
       [&](simd::ResidualSums& totals, std::int64_t first, std::int64_t count, std::size_t block) {
         const double before = totals.active;
         over_stretches(first, count, totals, [&](std::int64_t i, std::size_t n, const Stretch& stretch) {
           simd::ResidualSums part;
-          kernels_->residual(n, stretch.of(approach), seed, p + i, g + i, z + i, &part);
+          kernels_->residual(n, stretch.of(approach), noise, seed, p + i, g + i, z + i, &part);
           return part;
         });
         in_contact_[block] = totals.active > before ? 1 : 0;

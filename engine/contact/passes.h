@@ -59,8 +59,10 @@ class Passes {
   /// p += step·v, g += step·q everywhere.
   AdvanceTotals advance(double step, double* p, const Real* v, double* g, const Real* q);
 
-  /// Nodes out of contact with g < approach enter with the pressure seed; z = g − approach in contact, else 0.
-  simd::ResidualSums residual(const LinearTrend& approach, double seed, double* p, const double* g, Real* z);
+  /// Nodes out of contact with g < approach − noise enter with the pressure seed; z = g − approach in contact, else
+  /// 0.
+  simd::ResidualSums residual(const LinearTrend& approach, double noise, double seed, double* p, const double* g,
+                              Real* z);
 
   DirectionTotals correlate(const double* p, const Real* z, const Real* v, const Real* q);
 

@@ -62,8 +62,8 @@ struct ContactKernels {
   void (*advance)(std::size_t n, Line x, double step, double* p, const Real* v, double* g, const Real* q,
                   AdvanceSums* sums);
 
-  /// p = seed where p = 0 and g < approach; then z = g − approach where active, else 0.
-  void (*residual)(std::size_t n, Line approach, double seed, double* p, const double* g, Real* z,
+  /// p = seed where p = 0 and g < approach − noise; then z = g − approach where active, else 0.
+  void (*residual)(std::size_t n, Line approach, double noise, double seed, double* p, const double* g, Real* z,
                    ResidualSums* sums);
 
   /// Sums that give the next direction.

@@ -205,15 +205,15 @@ TYPED_TEST(ContactKernelsOf, advance_by_nothing_changes_nothing) {
 TYPED_TEST(ContactKernelsOf, residual) {
   for_every_block<TypeParam>([](const ContactKernels<TypeParam>& run, Block<TypeParam>& at, const Asked& asked) {
     const auto p = at.p.copy(), g = at.g.copy();
-    const double seed = 1e-30;
+    const double noise = 0.125, seed = 1e-30;
     ResidualSums sums;
-    run.residual(at.n, kApproach, seed, at.p.data(), at.g.data(), at.z.data(), &sums);
+    run.residual(at.n, kApproach, noise, seed, at.p.data(), at.g.data(), at.z.data(), &sums);
     double active = 0, entered = 0, barred = 0, depth = 0;
     Sum complementarity;
     for (std::size_t i = 0; i < at.n; ++i) {
       const double approach = asked.at(kApproach, i);
       depth = std::max(depth, approach - g[i]);
-      const bool enters = p[i] == 0 && g[i] < approach;
+      const bool enters = p[i] == 0 && g[i] - approach < -noise;
       EXPECT_EQ(at.p[i], enters ? seed : p[i]);
       EXPECT_EQ(at.z[i], static_cast<TypeParam>(at.p[i] > 0 ? g[i] - approach : 0));
       active += at.p[i] > 0 ? 1 : 0;

@@ -44,14 +44,14 @@ struct ContactPasses {
     *sums = {active, {load, load_x, load_xx}, {gap, gap_x}, -min_pressure};
   }
 
-  static void residual(std::size_t n, Line approach, double seed, double* __restrict p, const double* __restrict g,
-                       Real* __restrict z, ResidualSums* sums) {
+  static void residual(std::size_t n, Line approach, double noise, double seed, double* __restrict p,
+                       const double* __restrict g, Real* __restrict z, ResidualSums* sums) {
     double active = 0, entered = 0, complementarity = 0, barred = 0, deepest = 0;
 #pragma omp simd reduction(+ : active, entered, complementarity) reduction(max : barred, deepest)
     for (std::size_t i = 0; i < n; ++i) {
       const double r = g[i] - at(approach, i);
       const double before = p[i];
-      const double enters = (before == 0 ? 1.0 : 0.0) * (r < 0 ? 1.0 : 0.0);
+      const double enters = (before == 0 ? 1.0 : 0.0) * (r < -noise ? 1.0 : 0.0);
       const double pressure = enters != 0 ? seed : before;
       p[i] = pressure;
       entered += enters;
