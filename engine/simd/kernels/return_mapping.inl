@@ -43,27 +43,46 @@ inline void measure(const ReturnPoints& points, double initial, Measured& __rest
   measured.sound = sound > 0;
 }
 
-/// Moves the points that may yield together; returns how many, filled up to a whole number of groups.
-inline std::size_t collect(const ReturnPoints& points, const Measured& measured, Candidates& candidates,
-                           std::uint32_t* place, std::size_t* found) {
-  std::size_t count = 0;
+/// Moves the points that may yield together, in their order, and fills them up to a whole number of groups, which is
+/// returned. place: where each stood; count: how many they are.
+inline std::size_t collect(const ReturnPoints& points, const Measured& measured, Candidates& __restrict candidates,
+                           std::uint32_t* __restrict place, std::size_t* count) {
+  std::size_t found = 0;
   for (std::size_t i = 0; i < kReturnBlock; ++i) {
-    place[count] = static_cast<std::uint32_t>(i);
-    count += measured.above[i] > 0 ? 1 : 0;
+    place[found] = static_cast<std::uint32_t>(i);
+    found += measured.above[i] > 0 ? 1 : 0;
   }
-  for (std::size_t k = 0; k < count; ++k) {
-    candidates.trial[k] = std::sqrt(measured.square[place[k]]);
-    candidates.strain[k] = points.plastic_strain[place[k]];
-    candidates.factor[k] = points.factor[place[k]];
+  *count = found;
+  if (found == kReturnBlock) {
+    std::memcpy(candidates.trial, measured.square, sizeof candidates.trial);
+    std::memcpy(candidates.strain, points.plastic_strain, sizeof candidates.strain);
+    std::memcpy(candidates.factor, points.factor, sizeof candidates.factor);
+  } else {
+    for (std::size_t k = 0; k < found; ++k) {
+      candidates.trial[k] = measured.square[place[k]];
+      candidates.strain[k] = points.plastic_strain[place[k]];
+      candidates.factor[k] = points.factor[place[k]];
+    }
   }
-  *found = count;
-  const std::size_t filled = (count + kReturnGroup - 1) / kReturnGroup * kReturnGroup;
-  for (std::size_t k = count; k < filled; ++k) {
+  const std::size_t filled = (found + kReturnGroup - 1) / kReturnGroup * kReturnGroup;
+  for (std::size_t k = found; k < filled; ++k) {
     candidates.trial[k] = 0.0;
     candidates.strain[k] = 0.0;
     candidates.factor[k] = 1.0;
   }
+#pragma omp simd
+  for (std::size_t k = 0; k < filled; ++k) candidates.trial[k] = std::sqrt(candidates.trial[k]);
   return filled;
+}
+
+/// Moves results of the candidates back to their places.
+inline void spread(std::size_t count, const std::uint32_t* __restrict place, const double* __restrict from,
+                   double* __restrict to) {
+  if (count == kReturnBlock) {
+    std::memcpy(to, from, kReturnBlock * sizeof(double));
+  } else {
+    for (std::size_t k = 0; k < count; ++k) to[place[k]] = from[k];
+  }
 }
 
 inline void solve(std::size_t m, const HardeningCurve& curve, double stiffness, Candidates& candidates) {
@@ -115,12 +134,25 @@ inline void write_stress(const ReturnPoints& points, const double* __restrict th
   for (int k = 0; k < 6; ++k) std::memcpy(stress[k], mapped[k], sizeof mapped[k]);
 }
 
+/// Zeros are mostly there already, from the iteration before: a cache line that is not written need not go back.
+inline void clear_block(double* to) {
+  std::uint64_t any = 0;
+#pragma omp simd reduction(| : any)
+  for (std::size_t i = 0; i < kReturnBlock; ++i) any |= __builtin_bit_cast(std::uint64_t, to[i]);
+  if (any != 0) std::memset(to, 0, kReturnBlock * sizeof(double));
+}
+
 inline void copy_block(const double* from, double* to) {
-  if (from != to) std::memcpy(to, from, kReturnBlock * sizeof(double));
+  std::uint64_t differs = 0;
+#pragma omp simd reduction(| : differs)
+  for (std::size_t i = 0; i < kReturnBlock; ++i) {
+    differs |= __builtin_bit_cast(std::uint64_t, from[i]) ^ __builtin_bit_cast(std::uint64_t, to[i]);
+  }
+  if (differs != 0) std::memcpy(to, from, kReturnBlock * sizeof(double));
 }
 
 inline void write_elastic(const ReturnPoints& points, const Measured& measured, const ReturnResult& result) {
-  for (int k = 0; k < 6; ++k) std::memset(result.increment[k], 0, kReturnBlock * sizeof(double));
+  for (int k = 0; k < 6; ++k) clear_block(result.increment[k]);
   copy_block(points.plastic_strain, result.plastic_strain);
   if (result.stress[0] != nullptr) {
     for (int k = 0; k < 6; ++k) copy_block(points.trial[k], result.stress[k]);
@@ -145,23 +177,30 @@ __attribute__((noinline)) std::size_t map_block(const HardeningCurve& curve, dou
   }
   Candidates candidates;
   std::uint32_t place[kReturnBlock];
-  std::size_t count = 0, yielded = 0;
+  std::size_t count = 0;
   const std::size_t filled = collect(points, measured, candidates, place, &count);
   solve(filled, curve, stiffness, candidates);
 
-  double share[kReturnBlock], flow[kReturnBlock] = {}, theta[kReturnBlock], theta_bar[kReturnBlock] = {};
-  for (std::size_t i = 0; i < kReturnBlock; ++i) {
-    share[i] = 0.0;
-    theta[i] = 1.0;
+  double share[kReturnBlock] = {}, flow[kReturnBlock] = {}, theta[kReturnBlock], theta_bar[kReturnBlock] = {};
+  for (double& one : theta) one = 1.0;
+  double solved_share[kReturnBlock], ratio[kReturnBlock], rest[kReturnBlock], yields = 0;
+#pragma omp simd reduction(+ : yields)
+  for (std::size_t k = 0; k < filled; ++k) {
+    const double q = candidates.trial[k] > 0 ? candidates.trial[k] : 1.0, inverse = 1.0 / q;
+    solved_share[k] = 1.5 * candidates.flow[k] * inverse;
+    ratio[k] = candidates.flow[k] > 0 ? candidates.stress[k] * inverse : 1.0;
+    yields += candidates.flow[k] > 0 ? 1.0 : 0.0;
   }
-  for (std::size_t k = 0; k < count; ++k) {
-    if (!(candidates.flow[k] > 0)) continue;
-    const double q = candidates.trial[k], ratio = candidates.stress[k] / q;
-    flow[place[k]] = candidates.flow[k];
-    share[place[k]] = 1.5 * candidates.flow[k] / q;
-    theta[place[k]] = ratio;
-    theta_bar[place[k]] = stiffness / (stiffness + candidates.slope[k]) - (1.0 - ratio);
-    ++yielded;
+  spread(count, place, candidates.flow, flow);
+  spread(count, place, solved_share, share);
+  spread(count, place, ratio, theta);
+  if (result.theta_bar != nullptr) {
+#pragma omp simd
+    for (std::size_t k = 0; k < filled; ++k) {
+      const double tangent = stiffness / (stiffness + candidates.slope[k]) - (1.0 - ratio[k]);
+      rest[k] = candidates.flow[k] > 0 ? tangent : 0.0;
+    }
+    spread(count, place, rest, theta_bar);
   }
   write_increments(points, share, result.increment);
   if (result.von_mises != nullptr) {
@@ -172,7 +211,7 @@ __attribute__((noinline)) std::size_t map_block(const HardeningCurve& curve, dou
   std::memcpy(result.plastic_strain, flow, sizeof flow);
   if (result.theta != nullptr) std::memcpy(result.theta, theta, sizeof theta);
   if (result.theta_bar != nullptr) std::memcpy(result.theta_bar, theta_bar, sizeof theta_bar);
-  return yielded;
+  return static_cast<std::size_t>(yields);
 }
 
 /// The arrays of ReturnResult one after the other.
