@@ -85,9 +85,10 @@ inline void spread(std::size_t count, const std::uint32_t* __restrict place, con
   }
 }
 
-inline void solve(std::size_t m, const HardeningCurve& curve, double stiffness, Candidates& candidates) {
+inline void solve(std::size_t m, const HardeningCurve& curve, double stiffness, bool wants_slope,
+                  Candidates& candidates) {
   switch (curve.form) {
-    case HardeningForm::power: return solve_power(m, curve, stiffness, candidates);
+    case HardeningForm::power: return solve_power(m, curve, stiffness, wants_slope, candidates);
     case HardeningForm::linear: return solve_linear(m, curve, stiffness, candidates);
     case HardeningForm::voce: return solve_voce(m, curve, stiffness, candidates);
     case HardeningForm::table: return solve_table(m, curve, stiffness, candidates);
@@ -95,21 +96,22 @@ inline void solve(std::size_t m, const HardeningCurve& curve, double stiffness, 
 }
 
 /// increment = share·deviator. The deviator is formed from differences, so that the mean stress does not round it.
+/// The zeros of elastic points are positive, as in a block without plastic ones.
 inline void write_increments(const ReturnPoints& points, const double* __restrict share, double* const* increment) {
   const double *xx = points.trial[0], *yy = points.trial[1], *zz = points.trial[2];
   double* __restrict to_xx = increment[0], * __restrict to_yy = increment[1], * __restrict to_zz = increment[2];
 #pragma omp simd
   for (std::size_t i = 0; i < kReturnBlock; ++i) {
     const double a = xx[i] - yy[i], b = yy[i] - zz[i], c = zz[i] - xx[i], third = share[i] * (1.0 / 3);
-    to_xx[i] = third * (a - c);
-    to_yy[i] = third * (b - a);
-    to_zz[i] = third * (c - b);
+    to_xx[i] = third * (a - c) + 0.0;
+    to_yy[i] = third * (b - a) + 0.0;
+    to_zz[i] = third * (c - b) + 0.0;
   }
   for (int k = 3; k < 6; ++k) {
     const double* from = points.trial[k];
     double* __restrict to = increment[k];
 #pragma omp simd
-    for (std::size_t i = 0; i < kReturnBlock; ++i) to[i] = share[i] * from[i];
+    for (std::size_t i = 0; i < kReturnBlock; ++i) to[i] = share[i] * from[i] + 0.0;
   }
 }
 
@@ -179,7 +181,7 @@ __attribute__((noinline)) std::size_t map_block(const HardeningCurve& curve, dou
   std::uint32_t place[kReturnBlock];
   std::size_t count = 0;
   const std::size_t filled = collect(points, measured, candidates, place, &count);
-  solve(filled, curve, stiffness, candidates);
+  solve(filled, curve, stiffness, result.theta_bar != nullptr, candidates);
 
   double share[kReturnBlock] = {}, flow[kReturnBlock] = {}, theta[kReturnBlock], theta_bar[kReturnBlock] = {};
   for (double& one : theta) one = 1.0;

@@ -32,13 +32,14 @@ struct Candidates {
   double factor[kReturnBlock];  // f
   double flow[kReturnBlock];    // results: the increment of p, 0 where the point does not yield,
   double stress[kReturnBlock];  // the von Mises stress then,
-  double slope[kReturnBlock];   // and f dY/dp there
+  double slope[kReturnBlock];   // and f dY/dp there, if it is wanted
 };
 
 struct PowerWork {
   double before[kReturnBlock];   // w of the old plastic strain
   double w[kReturnBlock];        // its estimate
-  double settled[kReturnBlock];  // 1: flow, stress and slope are final; else 0
+  double settled[kReturnBlock];  // 1: flow and stress are final; else 0
+  double rising[kReturnBlock];   // 1: on the power law; 0: on the plateau before it, or elastic
   float along[kReturnBlock];     // starting values: a/total, b/total, w before, left side there/total,
   float across[kReturnBlock];    // and the inverse slope of its logarithm there
   float first[kReturnBlock];
@@ -64,7 +65,7 @@ inline void begin_power(std::size_t m, const HardeningCurve& curve, double stiff
     const double yield = power > onset ? power : onset;
     points.flow[i] = 0.0;
     points.stress[i] = q;
-    points.slope[i] = 0.0;
+    work.rising[i] = 0.0;
     work.before[i] = before;
     work.settled[i] = q > yield * kOnYield ? 0.0 : 1.0;
     const double inverse_total = 1.0 / (q + a * before);
@@ -100,38 +101,36 @@ inline void start_power(std::size_t m, const HardeningCurve& curve, const PowerW
 inline double settle_power(std::size_t m, const HardeningCurve& curve, double stiffness,
                            Candidates& __restrict points, PowerWork& __restrict work) {
   constexpr double kNear = 1.5e-5;  // a step relative to w whose cube is below a rounding
-  const double n = curve.exponent, inverse_scale = 1.0 / curve.scale;
+  const double n = curve.exponent, inverse_scale = 1.0 / curve.scale, inverse_stiffness = 1.0 / stiffness;
   double pending = 0;
 #pragma omp simd reduction(+ : pending)
   for (std::size_t i = 0; i < m; ++i) {
     const double q = points.trial[i], before = work.before[i];
     const double guess = (work.w[i] - before) * inverse_scale;
     const double w = before + curve.scale * guess;
-    const double inverse_w = 1.0 / w;
     const double exponent = n * log_of(w);
     const double y = points.factor[i] * curve.coefficient * exp_of(exponent);
-    const double slope = n * y * curve.scale * inverse_w;
     const double excess = stiffness * guess + (y - q);
-    const double inverse_tangent = 1.0 / (stiffness + slope);
-    const double bend = slope * (n - 1.0) * curve.scale * inverse_w;
-    const double newton = -excess * inverse_tangent;
-    const double third = newton * (1.0 - 0.5 * newton * bend * inverse_tangent);
-    const double full = third * curve.scale * inverse_w;
-    const double near = std::fabs(full) <= kNear ? 1.0 : 0.0;
+    // Relative to w, so that its inverse, which may overflow, is not needed.
+    const double inverse = 1.0 / (stiffness * inverse_scale * w + n * y);
+    const double newton = -excess * inverse;
+    const double third = newton * (1.0 - 0.5 * newton * (n - 1.0) * n * y * inverse);
+    const double near = std::fabs(third) <= kNear ? 1.0 : 0.0;
     const double noise = (8.0 + std::fabs(exponent)) * kRounding * q;
     const double exact = std::fabs(excess) <= noise ? 1.0 : 0.0;
-    const double ratio = near * full;
-    const double sum = guess + near * third;
+    const double ratio = near * third;
+    const double sum = guess + ratio * w * inverse_scale;
     const double grown =
         y * (1.0 + n * ratio * (1.0 + (n - 1.0) * ratio * (1.0 / 2) * (1.0 + (n - 2.0) * ratio * (1.0 / 3))));
     const double onset = points.factor[i] * curve.onset;
-    const double on_power = grown >= onset ? 1.0 : 0.0;
-    const double flow = on_power != 0 ? (sum > 0 ? sum : 0.0) : (q - onset) / stiffness;
-    const double stress = on_power != 0 ? grown : onset;
+    const double rising = grown >= onset ? 1.0 : 0.0;
+    const double flow = rising != 0 ? (sum > 0 ? sum : 0.0) : (q - onset) * inverse_stiffness;
+    const double stress = rising != 0 ? grown : onset;
     const double settled = work.settled[i];
+    work.w[i] = settled != 0 ? work.w[i] : w + ratio * w;
+    work.rising[i] = settled != 0 ? work.rising[i] : rising;
     points.flow[i] = settled != 0 ? points.flow[i] : flow;
     points.stress[i] = settled != 0 ? points.stress[i] : stress;
-    points.slope[i] = settled != 0 ? points.slope[i] : on_power * slope * (1.0 + (n - 1.0) * ratio);
     const double now = near + exact + settled > 0 ? 1.0 : 0.0;
     work.settled[i] = now;
     pending += 1.0 - now;
@@ -153,11 +152,13 @@ inline void advance_power(std::size_t m, const HardeningCurve& curve, double sti
     const double moved = w * exp_of(-step);
     const double above = moved > before ? moved : before;
     const double upper = total / a;
-    work.w[i] = above < upper ? above : upper;
+    const double next = above < upper ? above : upper;
+    work.w[i] = work.settled[i] != 0 ? w : next;
   }
 }
 
-inline void solve_power(std::size_t m, const HardeningCurve& curve, double stiffness, Candidates& points) {
+inline void solve_power(std::size_t m, const HardeningCurve& curve, double stiffness, bool wants_slope,
+                        Candidates& points) {
   constexpr int kRounds = 100;  // Newton's logarithmic steps shrink w at least e times each, to a rounding of it
   PowerWork work;
   float estimate[kReturnBlock];
@@ -173,6 +174,11 @@ inline void solve_power(std::size_t m, const HardeningCurve& curve, double stiff
   }
   for (int round = 0; settle_power(m, curve, stiffness, points, work) > 0 && round < kRounds; ++round) {
     advance_power(m, curve, stiffness, points, work);
+  }
+  if (!wants_slope) return;
+#pragma omp simd
+  for (std::size_t i = 0; i < m; ++i) {
+    points.slope[i] = work.rising[i] * curve.exponent * points.stress[i] * curve.scale / work.w[i];
   }
 }
 
