@@ -194,7 +194,10 @@ double YieldCurve::factor_at(double depth) const {
 std::vector<double> YieldCurve::factors_at(std::span<const double> depths) const {
   std::vector<double> factors;
   factors.reserve(depths.size());
-  for (const double depth : depths) factors.push_back(factor_at(depth));
+  for (std::size_t k = 0; k < depths.size(); ++k) {
+    if (!(depths[k] >= 0)) refuse("depth[" + std::to_string(k) + "]", depths[k], "at least 0 [m]");
+    factors.push_back(factor_at(depths[k]));
+  }
   return factors;
 }
 

@@ -85,6 +85,7 @@ class YieldCurve {
   double yield_stress(double p) const;
 
   double factor_at(double depth) const;
+  /// Throws for a depth that is negative or no number.
   std::vector<double> factors_at(std::span<const double> depths) const;
 
  private:

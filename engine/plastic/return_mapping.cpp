@@ -11,7 +11,8 @@ namespace brinell::plastic {
 
 namespace {
 
-constexpr std::int64_t kChunk = 4096;  // points: whole blocks of the kernel; its arrays stay in the second cache
+constexpr std::int64_t kChunk = 4096;  // points; its arrays stay in the second cache
+static_assert(kChunk % static_cast<std::int64_t>(simd::kReturnBlock) == 0);
 
 constexpr std::array<const char*, 6> kNames{"xx", "yy", "zz", "yz", "xz", "xy"};
 
@@ -87,6 +88,7 @@ std::int64_t map_to_yield(const parallel::Arena& arena, const simd::KernelTable&
     target.von_mises = behind(result.von_mises, begin);
     target.theta = behind(result.theta, begin);
     target.theta_bar = behind(result.theta_bar, begin);
+    target.moved = result.moved != nullptr ? result.moved + begin / simd::kReturnBlock : nullptr;
     kernels.return_mapping.map(end - begin, law.curve(), shear_modulus, points, target,
                                &reports[begin / static_cast<std::size_t>(kChunk)]);
   });

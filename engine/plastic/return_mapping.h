@@ -48,6 +48,14 @@ struct TrialState {
   std::span<const double> layer_factor{};  // on the yield stress, > 0; empty: one layer with the factor 1
 };
 
+/// For loops that return the same points again and again, most of them elastic: one value for each block of points, 0
+/// if the block's increments are zero and its plastic strain after is the one before. The caller sets it so for what
+/// stands in the arrays at first (1 is always right); the return keeps it, and leaves blocks that were and stay 0
+/// unwritten, which saves half of their memory traffic.
+constexpr std::size_t moved_size(std::size_t count) {
+  return (count + simd::kReturnBlock - 1) / simd::kReturnBlock;
+}
+
 /// Arrays of count values. increment may not overlap what is read; plastic_strain and stress may be arrays of the
 /// TrialState, which they then replace. Null but for the first two: not wanted; stress all six or none.
 struct MappedState {
@@ -57,6 +65,7 @@ struct MappedState {
   TensorArrays stress{};             // after [Pa]
   double* theta = nullptr;           // of the tangent
   double* theta_bar = nullptr;
+  std::uint8_t* moved = nullptr;  // moved_size(count) values, 0 or 1
 };
 
 /// Returns how many points yielded. Throws Status::invalid_argument with the index of the first point whose trial

@@ -35,8 +35,13 @@ struct ReturnPoints {
   const double* factor = nullptr;
 };
 
+/// Points that are handled together; the last may be fewer.
+inline constexpr std::size_t kReturnBlock = 128;
+
 /// Each array but increment and plastic_strain may be null, stress all six or none. plastic_strain and stress may be
-/// the arrays of the points.
+/// the arrays of the points. moved, unless null, has one value for each block: 0 if in what stands there the
+/// increments are zero and the plastic strain is that of the points; such blocks are not written again as long as
+/// they stay elastic.
 struct ReturnResult {
   double* increment[6] = {};
   double* plastic_strain = nullptr;
@@ -44,6 +49,7 @@ struct ReturnResult {
   double* stress[6] = {};
   double* theta = nullptr;
   double* theta_bar = nullptr;
+  std::uint8_t* moved = nullptr;
 };
 
 struct ReturnReport {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <cstring>
 #include <vector>
 
@@ -100,6 +101,41 @@ TEST(ReturnSameness, in_place_and_over_old_results) {
       for (std::size_t c = 0; c < 6; ++c) ASSERT_EQ(other.output(c)[i], 0.0);
       ASSERT_EQ(other.output(6)[i], points[i].plastic_strain);
     }
+  }
+}
+
+TEST(ReturnSameness, of_blocks_that_are_left_unwritten) {
+  const parallel::Arena arena(2);
+  const HardeningLaw law = Swift{1240e6, 30, 0.085, 1e6};
+  const YieldCurve curve({law, {}});
+  for (const std::size_t count : {std::size_t{5}, std::size_t{640}, std::size_t{9001}}) {
+    const std::vector<Point> points = many_points(law, count);
+    const simd::KernelTable& kernels = simd::best_kernels();
+    Field kept(points);
+    std::vector<std::uint8_t> moved(moved_size(count) + 1, 1);
+    for (const double scale : {0.1, 1.0, 0.1, 0.7, 1.0, 0.0}) {
+      Field fresh(points);
+      for (std::size_t c = 0; c < 6; ++c) {
+        for (std::size_t i = 0; i < count; ++i) {
+          fresh.input(c)[i] *= i % 1024 < 512 ? scale : 0;
+          kept.input(c)[i] = fresh.input(c)[i];
+        }
+      }
+      MappedState result = kept.result();
+      result.moved = moved.data();
+      EXPECT_EQ(map_to_yield(arena, kernels, curve, kShearModulus, kept.state(), result),
+                map_to_yield(arena, kernels, curve, kShearModulus, fresh.state(), fresh.result()));
+      EXPECT_TRUE(same_bits(kept.outputs().data(), fresh.outputs().data(), fresh.outputs().size()));
+      EXPECT_EQ(moved.back(), 1);
+      if (scale == 0.0) {
+        EXPECT_TRUE(std::all_of(moved.begin(), moved.end() - 1, [](std::uint8_t one) { return one == 0; }));
+      }
+    }
+    kept.output(0)[count - 1] = 5;  // an unmoved block is the caller's word
+    MappedState result = kept.result();
+    result.moved = moved.data();
+    map_to_yield(arena, kernels, curve, kShearModulus, kept.state(), result);
+    EXPECT_EQ(kept.output(0)[count - 1], count % simd::kReturnBlock == 0 ? 5 : 0);
   }
 }
 

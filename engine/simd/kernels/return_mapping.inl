@@ -136,26 +136,16 @@ inline void write_stress(const ReturnPoints& points, const double* __restrict th
   for (int k = 0; k < 6; ++k) std::memcpy(stress[k], mapped[k], sizeof mapped[k]);
 }
 
-/// Zeros are mostly there already, from the iteration before: a cache line that is not written need not go back.
-inline void clear_block(double* to) {
-  std::uint64_t any = 0;
-#pragma omp simd reduction(| : any)
-  for (std::size_t i = 0; i < kReturnBlock; ++i) any |= __builtin_bit_cast(std::uint64_t, to[i]);
-  if (any != 0) std::memset(to, 0, kReturnBlock * sizeof(double));
-}
-
 inline void copy_block(const double* from, double* to) {
-  std::uint64_t differs = 0;
-#pragma omp simd reduction(| : differs)
-  for (std::size_t i = 0; i < kReturnBlock; ++i) {
-    differs |= __builtin_bit_cast(std::uint64_t, from[i]) ^ __builtin_bit_cast(std::uint64_t, to[i]);
-  }
-  if (differs != 0) std::memcpy(to, from, kReturnBlock * sizeof(double));
+  if (from != to) std::memcpy(to, from, kReturnBlock * sizeof(double));
 }
 
 inline void write_elastic(const ReturnPoints& points, const Measured& measured, const ReturnResult& result) {
-  for (int k = 0; k < 6; ++k) clear_block(result.increment[k]);
-  copy_block(points.plastic_strain, result.plastic_strain);
+  if (result.moved == nullptr || *result.moved != 0) {
+    for (int k = 0; k < 6; ++k) std::memset(result.increment[k], 0, kReturnBlock * sizeof(double));
+    copy_block(points.plastic_strain, result.plastic_strain);
+    if (result.moved != nullptr) *result.moved = 0;
+  }
   if (result.stress[0] != nullptr) {
     for (int k = 0; k < 6; ++k) copy_block(points.trial[k], result.stress[k]);
   }
@@ -204,6 +194,7 @@ __attribute__((noinline)) std::size_t map_block(const HardeningCurve& curve, dou
     }
     spread(count, place, rest, theta_bar);
   }
+  if (result.moved != nullptr) *result.moved = 1;
   write_increments(points, share, result.increment);
   if (result.von_mises != nullptr) {
     for (std::size_t i = 0; i < kReturnBlock; ++i) result.von_mises[i] = theta[i] * std::sqrt(measured.square[i]);
@@ -249,10 +240,13 @@ inline std::size_t map_rest(std::size_t count, const HardeningCurve& curve, doub
   for (int k = 0; k < kResultArrays; ++k) {
     if (result_array(result, k) != nullptr) set_result_array(local, k, outputs[k]);
   }
+  std::uint8_t moved = 1;  // writes all of the local arrays
+  local.moved = &moved;
   const std::size_t yielded = map_block(curve, stiffness, padded, local, sound);
   for (int k = 0; k < kResultArrays && *sound; ++k) {
     if (double* array = result_array(result, k)) std::memcpy(array, outputs[k], count * sizeof(double));
   }
+  if (*sound && result.moved != nullptr) *result.moved = moved;
   return yielded;
 }
 
@@ -269,6 +263,7 @@ inline ReturnResult behind(const ReturnResult& result, std::size_t done) {
   for (int k = 0; k < kResultArrays; ++k) {
     if (double* array = result_array(result, k)) set_result_array(rest, k, array + done);
   }
+  if (result.moved != nullptr) rest.moved = result.moved + done / kReturnBlock;
   return rest;
 }
 

@@ -18,7 +18,6 @@
 namespace brinell::simd {
 namespace {
 
-constexpr std::size_t kReturnBlock = 128;
 constexpr std::size_t kReturnGroup = 16;  // the most lanes of any register: loops over whole groups have no tail
 
 /// A stress this close above the yield stress lies on it: a mapped stress stays as it is when it is mapped again.
