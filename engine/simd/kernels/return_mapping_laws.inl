@@ -34,21 +34,24 @@ struct Candidates {
   double slope[kReturnBlock];   // and f dY/dp there, if it is wanted
 };
 
+/// Short loops over arrays of a block, one after the other: an iteration of a long one has so many instructions that
+/// the processor sees no second one, and waits for the results of the first.
 struct PowerWork {
   double before[kReturnBlock];   // w of the old plastic strain
   double w[kReturnBlock];        // its estimate
   double settled[kReturnBlock];  // 1: flow and stress are final; else 0
   double rising[kReturnBlock];   // 1: on the power law; 0: on the plateau before it, or elastic
-  float along[kReturnBlock];     // starting values: a/total, b/total, w before, left side there/total,
-  float across[kReturnBlock];    // and the inverse slope of its logarithm there
+  double logarithm[kReturnBlock];
+  // Starting values, first a/total, b/total and the two terms of the left side at `before` over total, total being
+  // the right side; then the binary logarithms of the first two, and that of w.
+  float along[kReturnBlock], across[kReturnBlock];
+  float along_before[kReturnBlock], across_before[kReturnBlock];
   float first[kReturnBlock];
-  float left[kReturnBlock];
-  float inverse_slope[kReturnBlock];
 };
 
 inline __attribute__((always_inline)) float in_single(double x) {
-  const double above = x > 1e-30 ? x : 1e-30;
-  return static_cast<float>(above < 1e30 ? above : 1e30);
+  const float rounded = static_cast<float>(x), above = rounded > 1e-30f ? rounded : 1e-30f;
+  return above < 1e30f ? above : 1e30f;
 }
 
 inline void begin_power(std::size_t m, const HardeningCurve& curve, double stiffness, Candidates& __restrict points,
@@ -56,43 +59,55 @@ inline void begin_power(std::size_t m, const HardeningCurve& curve, double stiff
   const double a = stiffness / curve.scale, n = curve.exponent;
 #pragma omp simd
   for (std::size_t i = 0; i < m; ++i) {
-    const double q = points.trial[i];
-    const double before = curve.offset + curve.scale * points.strain[i];
-    const double b = points.factor[i] * curve.coefficient;
-    const double power = b * exp_of(n * log_of(before));
+    work.before[i] = curve.offset + curve.scale * points.strain[i];
+    work.logarithm[i] = n * log_of(work.before[i]);
+  }
+#pragma omp simd
+  for (std::size_t i = 0; i < m; ++i) {
+    work.w[i] = points.factor[i] * curve.coefficient * exp_of(work.logarithm[i]);
+  }
+#pragma omp simd
+  for (std::size_t i = 0; i < m; ++i) {
+    const double q = points.trial[i], power = work.w[i];
     const double onset = points.factor[i] * curve.onset;
     const double yield = power > onset ? power : onset;
     points.flow[i] = 0.0;
     points.stress[i] = q;
     work.rising[i] = 0.0;
-    work.before[i] = before;
     work.settled[i] = q > yield * kOnYield ? 0.0 : 1.0;
-    const double inverse_total = 1.0 / (q + a * before);
-    const double left = a * before + power;
+    const double along = a * work.before[i], inverse_total = 1.0 / (q + along);
     work.along[i] = in_single(a * inverse_total);
-    work.across[i] = in_single(b * inverse_total);
-    work.first[i] = in_single(before);
-    work.left[i] = in_single(left * inverse_total);
-    work.inverse_slope[i] = in_single(left / (a * before + n * power));
+    work.across[i] = in_single(points.factor[i] * curve.coefficient * inverse_total);
+    work.along_before[i] = in_single(along * inverse_total);
+    work.across_before[i] = in_single(power * inverse_total);
+    work.first[i] = in_single(work.before[i]);
   }
 }
 
-/// Newton's method for log2(2^(log2 along + t) + 2^(log2 across + n t)) = 0, t = log2 w.
-inline void start_power(std::size_t m, const HardeningCurve& curve, const PowerWork& __restrict work,
-                        float* __restrict estimate) {
+/// Newton's method for log2(x + y) = 0, x = 2^(log2 along + t) and y = 2^(log2 across + n t), t = log2 w, begun from
+/// the nearer of two upper bounds. Its logarithm is replaced by the first term of its series in (v − 1)/(v + 1),
+/// which is never larger: steps only get smaller where they were long.
+inline void start_power(std::size_t m, const HardeningCurve& curve, PowerWork& __restrict work) {
   constexpr int kSteps = 4;
   const float n = static_cast<float>(curve.exponent);
 #pragma omp simd
   for (std::size_t i = 0; i < m; ++i) {
-    const float log_along = log2_of(work.along[i]), log_across = log2_of(work.across[i]);
-    const float from_left = log2_of(work.first[i]) - log2_of(work.left[i]) * work.inverse_slope[i];
+    const float before = work.first[i], x = work.along_before[i], y = work.across_before[i], left = x + y;
+    const float log_along = log2_of(work.along[i]);
+    const float from_left = log2_of(before) - log2_of(left) * left / (x + n * y);
     const float nearer = from_left < -log_along ? from_left : -log_along;
-    float t = work.first[i] > 1e-29f ? nearer : -log_along;
-    for (int step = 0; step < kSteps; ++step) {
-      const float x = exp2_of(log_along + t), y = exp2_of(log_across + n * t);
-      t -= log2_of(x + y) * (x + y) / (x + n * y);
+    work.first[i] = before > 1e-29f ? nearer : -log_along;
+    work.along[i] = log_along;
+  }
+#pragma omp simd
+  for (std::size_t i = 0; i < m; ++i) work.across[i] = log2_of(work.across[i]);
+  for (int step = 0; step < kSteps; ++step) {
+#pragma omp simd
+    for (std::size_t i = 0; i < m; ++i) {
+      const float t = work.first[i];
+      const float x = exp2_of(work.along[i] + t), y = exp2_of(work.across[i] + n * t), v = x + y;
+      work.first[i] = t - 2.88539008f * (v - 1.0f) * v / ((v + 1.0f) * (x + n * y));
     }
-    estimate[i] = exp2_of(t);
   }
 }
 
@@ -102,12 +117,17 @@ inline double settle_power(std::size_t m, const HardeningCurve& curve, double st
   constexpr double kNear = 1.5e-5;  // a step relative to w whose cube is below a rounding
   const double n = curve.exponent, inverse_scale = 1.0 / curve.scale, inverse_stiffness = 1.0 / stiffness;
   double pending = 0;
+#pragma omp simd
+  for (std::size_t i = 0; i < m; ++i) {
+    const double guess = (work.w[i] - work.before[i]) * inverse_scale;
+    work.logarithm[i] = n * log_of(work.before[i] + curve.scale * guess);
+  }
 #pragma omp simd reduction(+ : pending)
   for (std::size_t i = 0; i < m; ++i) {
     const double q = points.trial[i], before = work.before[i];
     const double guess = (work.w[i] - before) * inverse_scale;
     const double w = before + curve.scale * guess;
-    const double exponent = n * log_of(w);
+    const double exponent = work.logarithm[i];
     const double y = points.factor[i] * curve.coefficient * exp_of(exponent);
     const double excess = stiffness * guess + (y - q);
     // Relative to w, so that its inverse, which may overflow, is not needed.
@@ -160,15 +180,14 @@ inline void solve_power(std::size_t m, const HardeningCurve& curve, double stiff
                         Candidates& points) {
   constexpr int kRounds = 100;  // Newton's logarithmic steps shrink w at least e times each, to a rounding of it
   PowerWork work;
-  float estimate[kReturnBlock];
   begin_power(m, curve, stiffness, points, work);
-  start_power(m, curve, work, estimate);
-  const double a = stiffness / curve.scale;
+  start_power(m, curve, work);
+  const double inverse_a = curve.scale / stiffness;
 #pragma omp simd
   for (std::size_t i = 0; i < m; ++i) {
-    const double start = static_cast<double>(estimate[i]), before = work.before[i];
+    const double start = static_cast<double>(exp2_of(work.first[i])), before = work.before[i];
     const double above = start > before ? start : before;
-    const double upper = before + points.trial[i] / a;
+    const double upper = before + points.trial[i] * inverse_a;
     work.w[i] = above < upper ? above : upper;
   }
   for (int round = 0; settle_power(m, curve, stiffness, points, work) > 0 && round < kRounds; ++round) {
