@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <random>
 #include <vector>
 
 #include "base/error.h"
@@ -89,6 +90,33 @@ TEST(ReturnMapping, every_law_returns_every_point_at_every_instruction_set) {
         EXPECT_EQ(yielded, expected) << name;
         EXPECT_TRUE(field.canaries_live());
       }
+    }
+  }
+}
+
+TEST(ReturnMapping, random_laws_return_every_point) {
+  const parallel::Arena arena(1);
+  std::mt19937 random(21);
+  const auto between = [&](double low, double high) {  // decades
+    return std::pow(10.0, std::uniform_real_distribution<double>(low, high)(random));
+  };
+  for (int k = 0; k < 90; ++k) {
+    HardeningLaw law = Swift{between(5, 11), between(-12, 6), between(-6, 0), between(0, 9)};
+    if (k % 3 == 1) law = RambergOsgood{between(7, 11), between(0, 2), k % 2 == 0 ? between(6, 9) : 0};
+    if (k % 3 == 2) {
+      const double yield = between(5, 9);
+      law = Voce{yield, yield + between(4, 10), between(-2, 9)};
+    }
+    const YieldCurve curve({law, {}});
+    const std::vector<Point> points = points_for(law, 1, static_cast<unsigned>(k));
+    Field field(points);
+    const simd::Isa isa = simd::supported()[static_cast<std::size_t>(k) % simd::supported().size()];
+    map_to_yield(arena, simd::kernels(isa), curve, kShearModulus, field.state(), field.result());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      SCOPED_TRACE("law " + std::to_string(k) + " at " + std::string(simd::name(isa)) + ", point " +
+                   std::to_string(i));
+      expect_returned(law, curve, 1, points[i], field, i);
+      if (HasFatalFailure()) return;
     }
   }
 }
