@@ -13,34 +13,46 @@
 namespace brinell::simd {
 namespace {
 
+constexpr double kMostSquare = 1e300;  // of the von Mises stress; and the largest plastic strain
+
 struct Measured {
   double square[kReturnBlock];  // of the von Mises stress
   double above[kReturnBlock];   // square less that of the yield stress at zero plastic strain
   double most = 0;              // largest `above`
-  bool sound = true;            // all in range
+  double total = 0;             // of squares and plastic strains: NaN or infinite if any of them is
+  double least = 0;             // plastic strain
 };
 
 inline void measure(const ReturnPoints& points, double initial, Measured& __restrict measured) {
-  constexpr double kMost = 1e300;
   const double *xx = points.trial[0], *yy = points.trial[1], *zz = points.trial[2];
   const double *yz = points.trial[3], *xz = points.trial[4], *xy = points.trial[5];
-  double most = 0, sound = 1;
-#pragma omp simd reduction(max : most) reduction(min : sound)
+  const double *factor = points.factor, *strain = points.plastic_strain;
+  double most = 0, total = 0, least = 0;
+#pragma omp simd reduction(max : most) reduction(+ : total) reduction(min : least)
   for (std::size_t i = 0; i < kReturnBlock; ++i) {
     const double a = xx[i] - yy[i], b = yy[i] - zz[i], c = zz[i] - xx[i];
     const double shear = yz[i] * yz[i] + xz[i] * xz[i] + xy[i] * xy[i];
     const double square = 0.5 * (a * a + b * b + c * c) + 3 * shear;
-    const double limit = points.factor[i] * initial;
+    const double limit = factor[i] * initial;
     const double above = square - limit * limit;
-    const double p = points.plastic_strain[i];
-    const double in_range = (square <= kMost ? 1.0 : 0.0) * (p >= 0 ? 1.0 : 0.0) * (p <= kMost ? 1.0 : 0.0);
     measured.square[i] = square;
     measured.above[i] = above;
     most = above > most ? above : most;
-    sound = in_range < sound ? in_range : sound;
+    total += square + strain[i];
+    least = strain[i] < least ? strain[i] : least;
   }
   measured.most = most;
-  measured.sound = sound > 0;
+  measured.total = total;
+  measured.least = least;
+}
+
+/// The first point that is out of range, else kReturnBlock.
+inline std::size_t first_refused(const ReturnPoints& points, const Measured& measured) {
+  for (std::size_t i = 0; i < kReturnBlock; ++i) {
+    const double p = points.plastic_strain[i];
+    if (!(measured.square[i] <= kMostSquare && p >= 0 && p <= kMostSquare)) return i;
+  }
+  return kReturnBlock;
 }
 
 /// Moves the points that may yield together, in their order, and fills them up to a whole number of groups, which is
@@ -156,13 +168,17 @@ inline void write_elastic(const ReturnPoints& points, const Measured& measured, 
   }
 }
 
-/// Points and results of a whole block. Returns how many yielded.
+/// Points and results of a whole block. Returns how many yielded; refused: the first that is out of range, if any is.
 __attribute__((noinline)) std::size_t map_block(const HardeningCurve& curve, double stiffness,
-                                                const ReturnPoints& points, const ReturnResult& result, bool* sound) {
+                                                const ReturnPoints& points, const ReturnResult& result,
+                                                std::size_t* refused) {
   Measured measured;
   measure(points, curve.initial, measured);
-  *sound = measured.sound;
-  if (!measured.sound) return 0;
+  *refused = kReturnBlock;
+  if (!(measured.total <= kMostSquare && measured.least >= 0)) {
+    *refused = first_refused(points, measured);
+    if (*refused < kReturnBlock) return 0;
+  }
   if (!(measured.most > 0)) {
     write_elastic(points, measured, result);
     return 0;
@@ -225,7 +241,7 @@ inline void set_result_array(ReturnResult& result, int k, double* array) {
 
 /// The last points, fewer than a block.
 inline std::size_t map_rest(std::size_t count, const HardeningCurve& curve, double stiffness,
-                            const ReturnPoints& points, const ReturnResult& result, bool* sound) {
+                            const ReturnPoints& points, const ReturnResult& result, std::size_t* refused) {
   double inputs[8][kReturnBlock] = {}, outputs[kResultArrays][kReturnBlock];
   ReturnPoints padded;
   for (int k = 0; k < 6; ++k) {
@@ -242,11 +258,12 @@ inline std::size_t map_rest(std::size_t count, const HardeningCurve& curve, doub
   }
   std::uint8_t moved = 1;  // writes all of the local arrays
   local.moved = &moved;
-  const std::size_t yielded = map_block(curve, stiffness, padded, local, sound);
-  for (int k = 0; k < kResultArrays && *sound; ++k) {
+  const std::size_t yielded = map_block(curve, stiffness, padded, local, refused);
+  if (*refused < kReturnBlock) return 0;
+  for (int k = 0; k < kResultArrays; ++k) {
     if (double* array = result_array(result, k)) std::memcpy(array, outputs[k], count * sizeof(double));
   }
-  if (*sound && result.moved != nullptr) *result.moved = moved;
+  if (result.moved != nullptr) *result.moved = moved;
   return yielded;
 }
 
@@ -267,25 +284,6 @@ inline ReturnResult behind(const ReturnResult& result, std::size_t done) {
   return rest;
 }
 
-/// The first point of a block that measure() refuses.
-inline std::size_t first_refused(std::size_t count, const ReturnPoints& points) {
-  for (std::size_t i = 0; i < count; ++i) {
-    double inputs[8][kReturnBlock] = {};
-    ReturnPoints one;
-    for (int k = 0; k < 6; ++k) {
-      inputs[k][0] = points.trial[k][i];
-      one.trial[k] = inputs[k];
-    }
-    inputs[6][0] = points.plastic_strain[i];
-    one.plastic_strain = inputs[6];
-    one.factor = inputs[7];
-    Measured measured;
-    measure(one, 0.0, measured);
-    if (!measured.sound) return i;
-  }
-  return count;
-}
-
 inline void map_points(std::size_t n, const HardeningCurve& curve, double shear_modulus, const ReturnPoints& points,
                        const ReturnResult& result, ReturnReport* report) {
   double ones[kReturnBlock];
@@ -295,11 +293,12 @@ inline void map_points(std::size_t n, const HardeningCurve& curve, double shear_
   for (std::size_t done = 0; done < n; done += kReturnBlock) {
     const ReturnPoints here = behind(points, done, ones);
     const std::size_t count = n - done < kReturnBlock ? n - done : kReturnBlock;
-    bool sound = true;
-    report->plastic += count == kReturnBlock ? map_block(curve, stiffness, here, behind(result, done), &sound)
-                                             : map_rest(count, curve, stiffness, here, behind(result, done), &sound);
-    if (sound) continue;
-    report->refused = done + first_refused(count, here);
+    std::size_t refused = kReturnBlock;
+    report->plastic += count == kReturnBlock
+                           ? map_block(curve, stiffness, here, behind(result, done), &refused)
+                           : map_rest(count, curve, stiffness, here, behind(result, done), &refused);
+    if (refused == kReturnBlock) continue;
+    report->refused = done + refused;
     return;
   }
 }
