@@ -168,10 +168,10 @@ inline void write_elastic(const ReturnPoints& points, const Measured& measured, 
   }
 }
 
-/// Points and results of a whole block. Returns how many yielded; refused: the first that is out of range, if any is.
-__attribute__((noinline)) std::size_t map_block(const HardeningCurve& curve, double stiffness,
-                                                const ReturnPoints& points, const ReturnResult& result,
-                                                std::size_t* refused) {
+/// Points and results of a whole block; called from one place, so that there is one copy of it. Returns how many
+/// yielded; refused: the first that is out of range, if any is.
+inline std::size_t map_block(const HardeningCurve& curve, double stiffness, const ReturnPoints& points,
+                             const ReturnResult& result, std::size_t* refused) {
   Measured measured;
   measure(points, curve.initial, measured);
   *refused = kReturnBlock;
@@ -239,33 +239,40 @@ inline void set_result_array(ReturnResult& result, int k, double* array) {
              : result.theta_bar) = array;
 }
 
-/// The last points, fewer than a block.
-inline std::size_t map_rest(std::size_t count, const HardeningCurve& curve, double stiffness,
-                            const ReturnPoints& points, const ReturnResult& result, std::size_t* refused) {
-  double inputs[8][kReturnBlock] = {}, outputs[kResultArrays][kReturnBlock];
-  ReturnPoints padded;
-  for (int k = 0; k < 6; ++k) {
-    std::memcpy(inputs[k], points.trial[k], count * sizeof(double));
-    padded.trial[k] = inputs[k];
+/// The last points, fewer than a block, filled up with zeros.
+struct LastBlock {
+  double inputs[8][kReturnBlock];
+  double outputs[kResultArrays][kReturnBlock];
+  std::uint8_t moved = 1;  // all of the outputs are written
+  ReturnPoints points;
+  ReturnResult result;
+
+  LastBlock() = default;
+  LastBlock(std::size_t count, const ReturnPoints& from, const ReturnResult& to) {
+    std::memset(inputs, 0, sizeof inputs);
+    for (int k = 0; k < 6; ++k) {
+      std::memcpy(inputs[k], from.trial[k], count * sizeof(double));
+      points.trial[k] = inputs[k];
+    }
+    std::memcpy(inputs[6], from.plastic_strain, count * sizeof(double));
+    std::memcpy(inputs[7], from.factor, count * sizeof(double));
+    points.plastic_strain = inputs[6];
+    points.factor = inputs[7];
+    for (int k = 0; k < kResultArrays; ++k) {
+      if (result_array(to, k) != nullptr) set_result_array(result, k, outputs[k]);
+    }
+    result.moved = &moved;
   }
-  std::memcpy(inputs[6], points.plastic_strain, count * sizeof(double));
-  std::memcpy(inputs[7], points.factor, count * sizeof(double));
-  padded.plastic_strain = inputs[6];
-  padded.factor = inputs[7];
-  ReturnResult local;
-  for (int k = 0; k < kResultArrays; ++k) {
-    if (result_array(result, k) != nullptr) set_result_array(local, k, outputs[k]);
+  LastBlock(const LastBlock&) = delete;
+  LastBlock& operator=(const LastBlock&) = delete;
+
+  void give(std::size_t count, const ReturnResult& to) const {
+    for (int k = 0; k < kResultArrays; ++k) {
+      if (double* array = result_array(to, k)) std::memcpy(array, outputs[k], count * sizeof(double));
+    }
+    if (to.moved != nullptr) *to.moved = moved;
   }
-  std::uint8_t moved = 1;  // writes all of the local arrays
-  local.moved = &moved;
-  const std::size_t yielded = map_block(curve, stiffness, padded, local, refused);
-  if (*refused < kReturnBlock) return 0;
-  for (int k = 0; k < kResultArrays; ++k) {
-    if (double* array = result_array(result, k)) std::memcpy(array, outputs[k], count * sizeof(double));
-  }
-  if (result.moved != nullptr) *result.moved = moved;
-  return yielded;
-}
+};
 
 inline ReturnPoints behind(const ReturnPoints& points, std::size_t done, const double* ones) {
   ReturnPoints rest;
@@ -290,17 +297,19 @@ inline void map_points(std::size_t n, const HardeningCurve& curve, double shear_
   for (double& one : ones) one = 1.0;
   const double stiffness = 3 * shear_modulus;
   *report = {0, n};
+  const std::size_t rest = n % kReturnBlock, whole = n - rest;
+  auto last = rest != 0 ? LastBlock(rest, behind(points, whole, ones), behind(result, whole)) : LastBlock();
   for (std::size_t done = 0; done < n; done += kReturnBlock) {
-    const ReturnPoints here = behind(points, done, ones);
-    const std::size_t count = n - done < kReturnBlock ? n - done : kReturnBlock;
+    const bool is_last = done == whole;
     std::size_t refused = kReturnBlock;
-    report->plastic += count == kReturnBlock
-                           ? map_block(curve, stiffness, here, behind(result, done), &refused)
-                           : map_rest(count, curve, stiffness, here, behind(result, done), &refused);
-    if (refused == kReturnBlock) continue;
-    report->refused = done + refused;
-    return;
+    report->plastic += map_block(curve, stiffness, is_last ? last.points : behind(points, done, ones),
+                                 is_last ? last.result : behind(result, done), &refused);
+    if (refused < kReturnBlock) {
+      report->refused = done + refused;
+      return;
+    }
   }
+  if (rest != 0) last.give(rest, behind(result, whole));
 }
 
 inline double yield_of(const HardeningCurve& curve, double p) {
@@ -330,8 +339,9 @@ inline void yield_stresses(std::size_t n, const HardeningCurve& curve, const dou
     } else {
       for (std::size_t i = 0; i < kReturnBlock; ++i) yield[i] = yield_of(curve, strain[i]);
     }
-    for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t i = 0; i < count; ++i) {
       result[done + i] = (factor != nullptr ? factor[done + i] : 1.0) * yield[i];
+    }
   }
 }
 
