@@ -7,6 +7,7 @@
  *   brn_scene   a description: grid, bodies, surfaces, load history, solver
  *   brn_run     a scene planned on an engine, advanced increment by increment and asked for results
  *   brn_stress_compute  the stress below tractions that the caller already has, without scene and run
+ *   brn_return_map_batch  the plastic strain of many points from their trial stress, likewise
  *
  *   brn_engine *engine; brn_scene *scene; brn_run *run;
  *   brn_engine_create(NULL, &engine);
@@ -709,6 +710,129 @@ static inline void brn_stress_maxima_init(brn_stress_maxima *value) {
  * BRN_TOO_LARGE: the engine's memory_limit does not allow the work, the caller's fields not counted. */
 BRN_API brn_status brn_stress_compute(brn_engine *engine, const brn_stress_request *request,
                                       const brn_stress_fields *fields, brn_stress_maxima *maxima);
+
+/* ---------------------------------------------------------------- plasticity */
+
+/* Isotropic hardening: the yield stress [Pa] over the equivalent plastic strain p. It may not fall. */
+enum {
+  BRN_HARDENING_NONE = 0,           /* stays elastic */
+  BRN_HARDENING_SWIFT = 1,          /* B (C + strain_scale*p)^n */
+  BRN_HARDENING_LINEAR = 2,         /* yield_stress + hardening_modulus*p */
+  BRN_HARDENING_PERFECT = 3,        /* yield_stress */
+  BRN_HARDENING_VOCE = 4,           /* saturation_stress - (saturation_stress - yield_stress) exp(-rate*p) */
+  BRN_HARDENING_RAMBERG_OSGOOD = 5, /* p = (stress/K)^m; with a yield_stress the larger of both */
+  BRN_HARDENING_TABLE = 6 /* monotone piecewise cubic through the points (Fritsch & Carlson, 1980), then constant */
+};
+
+/* Each law reads its own members. Arrays are read during the call. */
+typedef struct brn_hardening {
+  size_t struct_size;
+  int32_t law; /* BRN_HARDENING_... */
+  int32_t reserved;
+  double B;                     /* [Pa] > 0 */
+  double C;                     /* >= 0 */
+  double n;                     /* 0 to 1 */
+  double strain_scale;          /* > 0; default 1e6 */
+  double yield_stress;          /* [Pa] > 0; Ramberg-Osgood: 0 is flow from zero */
+  double hardening_modulus;     /* [Pa] d stress/dp, >= 0 */
+  double saturation_stress;     /* [Pa] >= yield_stress */
+  double rate;                  /* > 0 */
+  double K;                     /* [Pa] > 0 */
+  double m;                     /* >= 1 */
+  const double *plastic_strain; /* table: point_count values, rising from 0, */
+  const double *stress;         /* and [Pa] > 0, never falling */
+  size_t point_count;
+  const double *depths;        /* any law: depth_count values [m], >= 0 and rising, */
+  const double *depth_factors; /* and the factors on the yield stress there, > 0; linear between, constant beyond */
+  size_t depth_count;          /* 0: the factor is 1 everywhere */
+} brn_hardening;
+
+static inline void brn_hardening_init(brn_hardening *value) {
+  value->struct_size = sizeof *value;
+  value->law = 0;
+  value->reserved = 0;
+  value->B = 0.0;
+  value->C = 0.0;
+  value->n = 0.0;
+  value->strain_scale = 1e6;
+  value->yield_stress = 0.0;
+  value->hardening_modulus = 0.0;
+  value->saturation_stress = 0.0;
+  value->rate = 0.0;
+  value->K = 0.0;
+  value->m = 0.0;
+  value->plastic_strain = NULL;
+  value->stress = NULL;
+  value->point_count = 0;
+  value->depths = NULL;
+  value->depth_factors = NULL;
+  value->depth_count = 0;
+}
+
+/* Points of one isotropic body, count doubles in each array. Trial stress: the stress if the strain increment were
+ * elastic, tension positive, BRN_XX ... BRN_XY. */
+typedef struct brn_return_points {
+  size_t struct_size;
+  size_t count;
+  double shear_modulus;         /* [Pa] > 0 */
+  const double *trial[6];       /* [Pa] */
+  const double *plastic_strain; /* equivalent, before; >= 0 */
+  const double *layer_depths;   /* [m] layer_count values: points lie layer after layer, equally many in each; */
+  size_t layer_count;           /* needed if the hardening has depth factors, not read if it has none */
+} brn_return_points;
+
+static inline void brn_return_points_init(brn_return_points *value) {
+  int k;
+  value->struct_size = sizeof *value;
+  value->count = 0;
+  value->shear_modulus = 0.0;
+  for (k = 0; k < 6; ++k) value->trial[k] = NULL;
+  value->plastic_strain = NULL;
+  value->layer_depths = NULL;
+  value->layer_count = 0;
+}
+
+/* Where results go. increment and plastic_strain are needed, the others may be NULL. plastic_strain and stress may be
+ * arrays of the points, which they then replace; increment may overlap none.
+ *
+ * The consistent tangent, with strain the total strain of the step, P the deviatoric part, N the unit direction of
+ * the trial's deviator, which is that of the increment, and K the bulk modulus:
+ *   d stress = K trace(d strain) 1 + 2 mu (theta P - theta_bar N N) : d strain
+ * theta is the von Mises stress after over that of the trial, theta_bar 3 mu/(3 mu + slope) - (1 - theta) with the
+ * slope of the hardening curve; 1 and 0 where the point stays elastic. */
+typedef struct brn_return_result {
+  size_t struct_size;
+  size_t capacity;        /* doubles in each array that is not NULL */
+  double *increment[6];   /* of plastic strain: tensor components BRN_XX ... BRN_XY, not engineering shears */
+  double *plastic_strain; /* equivalent, after */
+  double *von_mises;      /* after [Pa] */
+  double *stress[6];      /* after [Pa]; all six or none */
+  double *theta;
+  double *theta_bar;
+} brn_return_result;
+
+static inline void brn_return_result_init(brn_return_result *value) {
+  int k;
+  value->struct_size = sizeof *value;
+  value->capacity = 0;
+  for (k = 0; k < 6; ++k) value->increment[k] = NULL;
+  value->plastic_strain = NULL;
+  value->von_mises = NULL;
+  for (k = 0; k < 6; ++k) value->stress[k] = NULL;
+  value->theta = NULL;
+  value->theta_bar = NULL;
+}
+
+/* Radial return of rate-independent von Mises plasticity (Wilkins, 1964; Simo & Taylor, 1985), each point by itself:
+ * where the von Mises stress of the trial is above the yield stress, plastic strain along its deviator takes it
+ * there, stress = trial - 2 mu increment. The yield condition then holds to 1e-12 of the yield stress, whatever the
+ * law's slope, and plastic strain never decreases. *plastic_count, unless NULL, receives how many points yielded. On
+ * the engine's threads; calls from several threads are allowed. A value that is not finite or out of range (the
+ * message names its point; von Mises stresses must be below 1e150 Pa) is BRN_INVALID_ARGUMENT, and results then
+ * incomplete. */
+BRN_API brn_status brn_return_map_batch(brn_engine *engine, const brn_hardening *hardening,
+                                        const brn_return_points *points, const brn_return_result *result,
+                                        int64_t *plastic_count);
 
 #ifdef __cplusplus
 }

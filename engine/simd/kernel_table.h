@@ -7,6 +7,7 @@
 #include "simd/contact_kernels.h"
 #include "simd/influence_kernels.h"
 #include "simd/isa.h"
+#include "simd/return_mapping_kernels.h"
 #include "simd/subsurface_kernels.h"
 #include "simd/transform_kernels.h"
 
@@ -26,6 +27,7 @@ struct KernelTable {
   RealKernels<float> in_single;
   InfluenceKernels influence;
   SubsurfaceKernels subsurface;
+  ReturnMappingKernels return_mapping;
 
   template <class Real>
   const RealKernels<Real>& of() const {

@@ -140,6 +140,47 @@ static void progress_states_its_size(void) {
   brn_engine_destroy(engine);
 }
 
+/* Without strain_scale and what follows, and with members that are not known yet. */
+static void laws_of_other_releases_are_read(void) {
+  brn_engine *engine = plain_engine(1);
+  brn_hardening steel;
+  struct {
+    brn_return_result known;
+    double added[4];
+  } result;
+  brn_return_points points;
+  double numbers[20] = {4e9};
+  size_t k;
+  int64_t yielded = 0;
+  memset(&steel, 0x7f, sizeof steel);
+  steel.struct_size = offsetof(brn_hardening, strain_scale);
+  steel.law = BRN_HARDENING_SWIFT;
+  steel.B = 1240e6;
+  steel.C = 30.0;
+  steel.n = 0.085;
+  brn_return_points_init(&points);
+  points.count = 1;
+  points.shear_modulus = 80e9;
+  points.plastic_strain = &numbers[6];
+  memset(&result, 0x5a, sizeof result);
+  brn_return_result_init(&result.known);
+  result.known.struct_size = sizeof result;
+  result.known.capacity = 1;
+  result.known.plastic_strain = &numbers[13];
+  for (k = 0; k < 6; ++k) {
+    points.trial[k] = &numbers[k];
+    result.known.increment[k] = &numbers[7 + k];
+  }
+  points.struct_size = offsetof(brn_return_points, layer_depths);
+  CHECK_STATUS(BRN_OK, brn_return_map_batch(engine, &steel, &points, &result.known, &yielded));
+  CHECK(yielded == 1 && numbers[7] == numbers[13] && numbers[13] > 0.005 && numbers[13] < 0.01);
+  CHECK(untouched((unsigned char *)&result, sizeof result.known, sizeof result));
+  steel.struct_size = 0;
+  CHECK_STATUS(BRN_INVALID_ARGUMENT, brn_return_map_batch(engine, &steel, &points, &result.known, &yielded));
+  CHECK_SAYS(brn_engine_message(engine), "hardening|struct_size|0");
+  brn_engine_destroy(engine);
+}
+
 int main(void) {
   an_older_client_gets_defaults();
   an_unset_size_is_refused();
@@ -147,5 +188,6 @@ int main(void) {
   a_newer_client_is_accepted();
   results_stay_within_the_size();
   progress_states_its_size();
+  laws_of_other_releases_are_read();
   return check_report();
 }
