@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "simd/contact_kernels.h"
+#include "simd/eigenstrain_kernels.h"
 #include "simd/influence_kernels.h"
 #include "simd/isa.h"
 #include "simd/subsurface_kernels.h"
@@ -25,6 +26,7 @@ struct KernelTable {
   RealKernels<float> in_single;
   InfluenceKernels influence;
   SubsurfaceKernels subsurface;
+  EigenstrainKernels eigenstrain;
 
   template <class Real>
   const RealKernels<Real>& of() const {

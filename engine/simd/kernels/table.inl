@@ -4,6 +4,7 @@
 
 #include "simd/kernel_table.h"
 #include "simd/kernels/contact.inl"
+#include "simd/kernels/eigenstrain.inl"
 #include "simd/kernels/influence.inl"
 #include "simd/kernels/subsurface.inl"
 #include "simd/kernels/transform.inl"
@@ -19,7 +20,7 @@ constexpr RealKernels<Real> make_real_kernels() {
 template <class Arch>
 constexpr KernelTable make_table(Isa isa) {
   return {isa, make_real_kernels<Arch, double>(), make_real_kernels<Arch, float>(), influence_kernels<Arch>(),
-          subsurface_kernels<Arch>()};
+          subsurface_kernels<Arch>(), eigenstrain_kernels<Arch>()};
 }
 
 }  // namespace
