@@ -51,7 +51,7 @@ struct Frequency {
 };
 
 template <class Real>
-class ByLanes final : public Carrier<Real> {
+class ByLanes final : public LaneCarrier<Real> {
  public:
   ByLanes(const simd::TransformKernels<Real>& kernels, std::int64_t nx, std::int64_t ny, std::int64_t length_x,
           std::int64_t length_y, Boundary boundary)
@@ -70,6 +70,9 @@ class ByLanes final : public Carrier<Real> {
     columns_.ny = ny;
     columns_.tree = tree_y_.view();
   }
+
+  const simd::RowTransform<Real>& rows() const override { return rows_; }
+  const simd::ColumnTransform<Real>& columns() const override { return columns_; }
 
   Method method() const override { return Method::lanes; }
   std::int64_t padded_nx() const override { return (boundary_ == Boundary::free ? 2 : 1) * rows_.length; }
@@ -258,7 +261,7 @@ constexpr double kAdvantage = 2.5;
 }  // namespace
 
 template <class Real>
-std::unique_ptr<const Carrier<Real>> lane_carrier(const simd::TransformKernels<Real>& kernels, std::int64_t nx,
+std::unique_ptr<const LaneCarrier<Real>> lane_carrier(const simd::TransformKernels<Real>& kernels, std::int64_t nx,
                                                   std::int64_t ny, Boundary boundary, bool must_pay) {
   const std::int64_t lanes = kernels.lanes;
   if (boundary == Boundary::periodic) {
@@ -278,9 +281,9 @@ std::unique_ptr<const Carrier<Real>> lane_carrier(const simd::TransformKernels<R
   return std::make_unique<const ByLanes<Real>>(kernels, nx, ny, length_x, length_y, boundary);
 }
 
-template std::unique_ptr<const Carrier<double>> lane_carrier<double>(const simd::TransformKernels<double>&,
+template std::unique_ptr<const LaneCarrier<double>> lane_carrier<double>(const simd::TransformKernels<double>&,
                                                                      std::int64_t, std::int64_t, Boundary, bool);
-template std::unique_ptr<const Carrier<float>> lane_carrier<float>(const simd::TransformKernels<float>&, std::int64_t,
+template std::unique_ptr<const LaneCarrier<float>> lane_carrier<float>(const simd::TransformKernels<float>&, std::int64_t,
                                                                    std::int64_t, Boundary, bool);
 
 }  // namespace brinell::fft

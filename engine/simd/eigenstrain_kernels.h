@@ -19,27 +19,30 @@ struct Cuboid {
   double a = 0, b = 0, c = 0;
 };
 
-/// The strain that a box takes: five components, zz = −xx − yy.
+/// The strain that a box takes: five components of xx yy zz yz xz xy, for zz = −xx − yy.
 inline constexpr int kPlasticComponents = 5;
-inline constexpr int kPlasticOrder[kPlasticComponents] = {0, 1, 3, 4, 5};  // of xx yy zz yz xz xy
+inline constexpr int kPlasticOrder[kPlasticComponents] = {0, 1, 3, 4, 5};
 
-/// Geometry of a box in the lane transform, and what one block of it needs. A sequence along z is transformed as one
-/// along y is: nz real values, then zeros, by a tree of root 1/4.
+/// Spectral values of one frequency: the full space's potentials, the image's real parts, its imaginary parts.
+inline constexpr int kSpectralValues = kKelvinPotentials + 2 * kImagePotentials;
+
+/// Geometry of a box in the lane transform. A sequence along z is transformed as one along y is: nz real values, then
+/// zeros, by a tree of root 1/4.
 struct ResidualTransform {
   ColumnTransform<double> columns;  // along y
   TransformTree<double> along_z;
   std::int64_t nz;            // layers
-  const double* depth;        // of each layer, in the unit of the spectra's potentials
-  std::int64_t field_stride;  // of a layer in the field of one component, in doubles
+  const double* depth;        // of each layer, in the unit of the potentials
+  std::int64_t field_stride;  // from layer to layer in the field of one component, in doubles
   double poissons_ratio;
-  double inside;  // spectrum of a unit impulse, times the factor of the potentials: what a cuboid itself has
+  double own;  // a unit impulse's spectrum: what a cuboid takes off its own stress, in the unit of the spectra
 };
 
 /// One block: field[c] is its part in layer 0 of component xx yy zz yz xz xy; strain in (zz unused), stress out.
 struct ResidualBlock {
   double* field[6];
   const unsigned char* given;  // [plastic component][layer]: whether the strain is not all zero
-  const double* spectra;       // [position in y][position in z][15 full space, 43 image re, 43 image im][lane]
+  const double* spectra;       // [position in y][position in z][spectral value][lane]
 };
 
 struct EigenstrainKernels {
@@ -53,12 +56,13 @@ struct EigenstrainKernels {
   void (*surface_points)(const Cuboid& cuboid, const GaussRule& rule, double z, double poissons_ratio,
                          const RowSpan& span, double* rows, std::int64_t stride);
 
-  /// Transforms along z, in place, the spectra of one block and position in y, planes of z as they come from the
-  /// transforms along x and y: full space z = 0, 1 … (potentials odd in z: 0 at z = 0); image as real and imaginary
-  /// part of position p the planes nz + p and nz − p (p = 0: none), in cuboids above the surface.
-  void (*transform_spectra)(const TransformTree<double>& along_z, std::int64_t nz, double scale, double* spectra,
-                            double* scratch);
-  std::int64_t (*spectra_scratch)(const TransformTree<double>& along_z);
+  /// Transforms along z, in place, the spectra of one block and position in y, [position in z][spectral value][lane].
+  /// Before, position p holds the transforms along x and y of the full space's potentials p layers away, and of the
+  /// image's nz + p layers above (real part) and nz − p layers above (imaginary part; none for p = 0), p < nz.
+  /// phase: [position][re, im] of exp(−2πi θ (nz − 1)), as the image's sources come in reverse order.
+  void (*transform_spectra)(const TransformTree<double>& along_z, std::int64_t nz, const double* phase, double scale,
+                            double* spectra, double* scratch);
+  std::int64_t (*spectra_scratch)(const TransformTree<double>& along_z);  // doubles
 
   /// Strain to residual stress in one block.
   void (*residual_block)(const ResidualTransform& transform, const ResidualBlock& block, double* scratch);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "simd/kernels/eigenstrain_points.inl"
+#include "simd/kernels/eigenstrain_residual.inl"
 
 namespace brinell::simd {
 namespace {
@@ -11,12 +12,12 @@ constexpr EigenstrainKernels eigenstrain_kernels() {
       .kelvin_points = kelvin_points<Arch>,
       .image_points = image_points<Arch>,
       .surface_points = surface_points<Arch>,
-      .transform_spectra = nullptr,
-      .spectra_scratch = nullptr,
-      .residual_block = nullptr,
-      .residual_scratch = nullptr,
-      .accumulate_rows = nullptr,
-      .backward_columns = nullptr,
+      .transform_spectra = transform_spectra<Arch>,
+      .spectra_scratch = spectra_scratch<Arch>,
+      .residual_block = residual_block<Arch>,
+      .residual_scratch = residual_scratch<Arch>,
+      .accumulate_rows = accumulate_rows<Arch>,
+      .backward_columns = backward_columns<Arch>,
   };
 }
 

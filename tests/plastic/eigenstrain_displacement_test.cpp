@@ -1,0 +1,3 @@
+#include "plastic/eigenstrain_displacement.h"
+
+#include <gtest/gtest.h>
