@@ -236,7 +236,8 @@ StressOfStrain Eigenstrain::full_space(double x, double y, double z) const {
   double potential[simd::kKelvinPotentials];
   fill_row(simd::kernels(simd::Isa::baseline).eigenstrain, Which::kelvin, z / unit_, y / unit_, x / unit_, 1, 1,
            potential, 1);
-  const auto tensors = simd::kelvin_tensors(potential);
+  simd::KelvinTensors<double> tensors;
+  simd::kelvin_tensors(potential, tensors);
   return matrix_of(
       nu_, [&]<int I, int J>() { return simd::kelvin_stress<I, J>(tensors, nu_); }, std::make_index_sequence<36>());
 }
@@ -245,7 +246,8 @@ Eigenstrain::Image Eigenstrain::image(double x, double y, double zeta) const {
   double potential[simd::kImagePotentials];
   fill_row(simd::kernels(simd::Isa::baseline).eigenstrain, Which::image, zeta / unit_, y / unit_, x / unit_, 1, 1,
            potential, 1);
-  const auto tensors = simd::image_tensors(potential, nu_);
+  simd::ImageTensors<double> tensors;
+  simd::image_tensors(potential, nu_, tensors);
   const auto part = [&]<simd::ImagePart which>() {
     return matrix_of(
         nu_, [&]<int I, int J>() { return simd::image_stress<which, I, J>(tensors, nu_); },

@@ -52,8 +52,8 @@ TensorField direct_sum(const Box& box, const TensorField& strain, double nu) {
 }
 
 constexpr Box kBoxes[] = {
-    {1, 1, 1, 1, 1, 1},     {5, 7, 3, 1, 1, 1},       {2, 1, 4, 1, 1.5, 0.5},   {1, 9, 2, 2, 1, 1},
-    {13, 3, 7, 1, 0.7, 1.3}, {16, 8, 6, 1, 1, 1},      {17, 5, 11, 1e-6, 1e-6, 0.5e-6}, {33, 2, 5, 1, 1, 0.25},
+    {1, 1, 1, 1, 1, 1},      {5, 7, 3, 1, 1, 1},  {2, 1, 4, 1, 1.5, 0.5},          {1, 9, 2, 2, 1, 1},
+    {13, 3, 7, 1, 0.7, 1.3}, {16, 8, 6, 1, 1, 1}, {17, 5, 11, 1e-6, 1e-6, 0.5e-6}, {33, 2, 5, 1, 1, 0.25},
 };
 
 TEST(EigenstrainResponse, is_the_direct_sum) {
@@ -75,8 +75,8 @@ TEST(EigenstrainResponse, is_the_direct_sum) {
               << ", component " << n / box.cuboids() << ", cuboid " << n % box.cuboids();
           if (HasFailure()) return;
         }
-        std::printf("%s %ld x %ld x %ld nu %g: %.1e\n", std::string(simd::name(isa)).c_str(), box.nx, box.ny, box.nz, nu,
-                    worst / largest(expected.memory));
+        std::printf("%s %ld x %ld x %ld nu %g: %.1e\n", std::string(simd::name(isa)).c_str(), box.nx, box.ny, box.nz,
+                    nu, worst / largest(expected.memory));
       }
     }
   }

@@ -141,7 +141,8 @@ void fill_kelvin_matrix(const double* values, double nu, double own, ResidualMat
   for (int k = 0; k < kKelvinPotentials; ++k) {
     potential[k] = V::load_aligned(values + k * static_cast<std::int64_t>(V::size));
   }
-  const KelvinTensors<V> tensors = kelvin_tensors(potential);
+  KelvinTensors<V> tensors;
+  kelvin_tensors(potential, tensors);
   every_entry<-1>([&](auto row, auto column) __attribute__((always_inline)) {
     matrices.kelvin[row][column] = plastic_entry<row, column>([&]<int I, int J>() __attribute__((always_inline)) {
       const V value = kelvin_stress<I, J>(tensors, nu);
@@ -156,7 +157,8 @@ void fill_image_matrices(const double* values, double nu, ResidualMatrices<V>& m
   for (int k = 0; k < kImagePotentials; ++k) {
     potential[k] = V::load_aligned(values + k * static_cast<std::int64_t>(V::size));
   }
-  const ImageTensors<V> tensors = image_tensors(potential, nu);
+  ImageTensors<V> tensors;
+  image_tensors(potential, nu, tensors);
   const auto put = [](Complex<V> & entry, const V& value) __attribute__((always_inline)) {
     (imaginary ? entry.im : entry.re) = value;
   };
@@ -230,9 +232,9 @@ template <class Arch>
 ResidualScratch residual_scratch_parts(const ResidualTransform& transform, double* memory) {
   constexpr std::int64_t lanes = kLanes<Arch, double>;
   ResidualScratch parts{};
-  // Set apart so that equal places of the layers do not fall into the same cache set.
+  // Set apart so that equal places of layers, of sequences do not fall into the same cache set.
   parts.layer = 4 * transform.columns.tree.length * lanes + 2 * lanes;
-  parts.sequence = 2 * transform.along_z.length * lanes;
+  parts.sequence = 2 * transform.along_z.length * lanes + 2 * lanes;
   const std::int64_t of_columns = 6 * transform.nz * parts.layer, of_strain = kPlasticComponents * 4 * parts.sequence;
   const std::int64_t of_stress = 3 * 6 * 4 * parts.sequence;
   parts.size = of_columns + of_strain + of_stress + 3 * transform.nz * lanes;
@@ -264,12 +266,15 @@ void strains_forward(const ResidualTransform& transform, const PlasticColumns& c
           first + ((turn.from >> 1) * transform.columns.tree.length + position) * 2 * lanes + (turn.from & 1) * lanes;
       double* z = scratch.strain + (columns.column[n] * 4 + s) * scratch.sequence;
       real_forward<Arch>(transform.along_z, rows, scratch.layer, transform.nz, z);
-      for (std::int64_t k = 0; turn.negative && k < scratch.sequence; k += lanes) {
+      for (std::int64_t k = 0; turn.negative && k < 2 * transform.along_z.length * lanes; k += lanes) {
         (-V::load_aligned(z + k)).store_aligned(z + k);
       }
     }
   }
 }
+
+/// Spectra are fetched this many frequencies before they are needed (past the last ones nothing is read).
+constexpr std::int64_t kAhead = 2;
 
 template <class Arch>
 void strains_to_stress(const ResidualTransform& transform, const PlasticColumns& columns, const double* spectra,
@@ -279,12 +284,15 @@ void strains_to_stress(const ResidualTransform& transform, const PlasticColumns&
   ResidualMatrices<V> matrices;
   const std::int64_t part = 6 * 4 * scratch.sequence;
   for (std::int64_t p = 0; p < transform.along_z.length; ++p) {
+    Prefetch ahead{reinterpret_cast<const char*>(spectra + kAhead * kSpectralValues * lanes),
+                   kSpectralValues * lanes * static_cast<std::int64_t>(sizeof(double)) / 6};
     fill_kelvin_matrix(spectra, transform.poissons_ratio, transform.own, matrices);
     fill_image_matrices<false>(spectra + kKelvinPotentials * lanes, transform.poissons_ratio, matrices);
     fill_image_matrices<true>(spectra + (kKelvinPotentials + kImagePotentials) * lanes, transform.poissons_ratio,
                               matrices);
     const double* strain = scratch.strain + 2 * p * lanes;
     unrolled<6>([&](auto row) __attribute__((always_inline)) {
+      ahead.share(1);
       double* out = scratch.stress + static_cast<std::int64_t>(row) * 4 * scratch.sequence + 2 * p * lanes;
       product_row<true, row>(matrices.a, matrices.kelvin, columns, strain, scratch.sequence, out);
       product_row<false, row>(matrices.b, matrices.kelvin, columns, strain, scratch.sequence, out + part);

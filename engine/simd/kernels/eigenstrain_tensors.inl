@@ -29,8 +29,7 @@ struct KelvinTensors {
 };
 
 template <class V>
-KelvinTensors<V> kelvin_tensors(const V (&potential)[kKelvinPotentials]) {
-  KelvinTensors<V> t;
+[[gnu::always_inline]] inline void kelvin_tensors(const V* potential, KelvinTensors<V>& t) {
   for (int k = 0; k < 15; ++k) t.psi[k] = potential[k];
   for (int i = 0; i < 3; ++i) {
     for (int j = i; j < 3; ++j) {
@@ -39,7 +38,6 @@ KelvinTensors<V> kelvin_tensors(const V (&potential)[kKelvinPotentials]) {
                     t.psi[derivative_number(i, j, 2, 2)]);
     }
   }
-  return t;
 }
 
 template <class V>
@@ -60,8 +58,7 @@ V biharmonic_rest(const V* d) {
 }
 
 template <class V>
-ImageTensors<V> image_tensors(const V* p, double nu) {
-  ImageTensors<V> t;
+[[gnu::always_inline]] inline void image_tensors(const V* p, double nu, ImageTensors<V>& t) {
   const auto n = [](auto... axis) { return derivative_number(axis...); };
   for (int k = 0; k < 14; ++k) t.psi[k] = p[k];
   for (int k = 0; k < 14; ++k) t.psi5[k] = p[18 + k];
@@ -114,7 +111,6 @@ ImageTensors<V> image_tensors(const V* p, double nu) {
     t.plus[k] = first + second;
     t.minus[k] = first - second;
   }
-  return t;
 }
 
 /// Stress (i, k) of the nucleus s_jl = 1, both orders of j and l where they differ.
