@@ -251,6 +251,21 @@ std::int64_t residual_scratch(const ResidualTransform& transform) {
   return residual_scratch_parts<Arch>(transform, nullptr).size;
 }
 
+/// Fetches one position in y of all layers and components: they lie far apart, out of reach of the hardware's
+/// prefetching.
+template <class Arch>
+void fetch_position(const ResidualTransform& transform, std::int64_t position, const ResidualScratch& scratch) {
+  constexpr std::int64_t lanes = kLanes<Arch, double>;
+  constexpr auto bytes = static_cast<std::int64_t>(2 * lanes * sizeof(double));
+  for (std::int64_t layer = 0; layer < 6 * transform.nz; ++layer) {
+    for (std::int64_t part = 0; part < 2; ++part) {
+      const char* line = reinterpret_cast<const char*>(scratch.columns + layer * scratch.layer +
+                                                       (part * transform.columns.tree.length + position) * 2 * lanes);
+      for (std::int64_t byte = 0; byte < bytes; byte += 64) __builtin_prefetch(line + byte, 1, 2);
+    }
+  }
+}
+
 /// Strains along z at one position in y, turned and transformed.
 template <class Arch>
 void strains_forward(const ResidualTransform& transform, const PlasticColumns& columns, std::int64_t position,
@@ -371,6 +386,7 @@ void residual_block(const ResidualTransform& transform, const ResidualBlock& blo
   const std::int64_t of_position = transform.along_z.length * kSpectralValues * lanes;
   for (std::int64_t position = 0; position < transform.columns.tree.length; ++position) {
     strains_forward<Arch>(transform, columns, position, scratch);
+    if (position + 1 < transform.columns.tree.length) fetch_position<Arch>(transform, position + 1, scratch);
     strains_to_stress<Arch>(transform, columns, block.spectra + position * of_position, scratch);
     stresses_backward<Arch>(transform, position, scratch);
   }
