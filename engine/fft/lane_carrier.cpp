@@ -262,7 +262,7 @@ constexpr double kAdvantage = 2.5;
 
 template <class Real>
 std::unique_ptr<const LaneCarrier<Real>> lane_carrier(const simd::TransformKernels<Real>& kernels, std::int64_t nx,
-                                                  std::int64_t ny, Boundary boundary, bool must_pay) {
+                                                      std::int64_t ny, Boundary boundary, bool must_pay) {
   const std::int64_t lanes = kernels.lanes;
   if (boundary == Boundary::periodic) {
     if (nx % lanes != 0 || !is_tree_length(nx / lanes) || !is_tree_length(ny)) return nullptr;
@@ -282,8 +282,8 @@ std::unique_ptr<const LaneCarrier<Real>> lane_carrier(const simd::TransformKerne
 }
 
 template std::unique_ptr<const LaneCarrier<double>> lane_carrier<double>(const simd::TransformKernels<double>&,
-                                                                     std::int64_t, std::int64_t, Boundary, bool);
-template std::unique_ptr<const LaneCarrier<float>> lane_carrier<float>(const simd::TransformKernels<float>&, std::int64_t,
-                                                                   std::int64_t, Boundary, bool);
+                                                                         std::int64_t, std::int64_t, Boundary, bool);
+template std::unique_ptr<const LaneCarrier<float>> lane_carrier<float>(const simd::TransformKernels<float>&,
+                                                                       std::int64_t, std::int64_t, Boundary, bool);
 
 }  // namespace brinell::fft

@@ -29,6 +29,6 @@ class LaneCarrier : public Carrier<Real> {
 /// Null if the transform has no such size, or if `must_pay` and FFTW would be faster.
 template <class Real>
 std::unique_ptr<const LaneCarrier<Real>> lane_carrier(const simd::TransformKernels<Real>& kernels, std::int64_t nx,
-                                                  std::int64_t ny, Boundary boundary, bool must_pay);
+                                                      std::int64_t ny, Boundary boundary, bool must_pay);
 
 }  // namespace brinell::fft

@@ -19,8 +19,8 @@ struct Cuboid {
   double a = 0, b = 0, c = 0;
 };
 
-/// The strain that a box takes: five components of xx yy zz yz xz xy, for zz = −xx − yy. (An inline array would be one
-/// symbol of all instruction sets.)
+/// The strain that a box takes: five components of xx yy zz yz xz xy, for zz = −xx − yy. (An inline array would be
+/// one symbol of all instruction sets.)
 inline constexpr int kPlasticComponents = 5;
 constexpr int kPlasticOrder[kPlasticComponents] = {0, 1, 3, 4, 5};
 

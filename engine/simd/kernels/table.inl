@@ -19,8 +19,12 @@ constexpr RealKernels<Real> make_real_kernels() {
 
 template <class Arch>
 constexpr KernelTable make_table(Isa isa) {
-  return {isa, make_real_kernels<Arch, double>(), make_real_kernels<Arch, float>(), influence_kernels<Arch>(),
-          subsurface_kernels<Arch>(), eigenstrain_kernels<Arch>()};
+  return {isa,
+          make_real_kernels<Arch, double>(),
+          make_real_kernels<Arch, float>(),
+          influence_kernels<Arch>(),
+          subsurface_kernels<Arch>(),
+          eigenstrain_kernels<Arch>()};
 }
 
 }  // namespace
