@@ -44,13 +44,13 @@ struct Fields {
   explicit Fields(const Box& box) : memory(6 * box.cuboids()) {
     for (std::size_t c = 0; c < 6; ++c) component[c] = memory.data() + c * box.cuboids();
   }
-  plastic::ConstTensor constant() const {
-    plastic::ConstTensor tensor{};
+  plastic::TensorView constant() const {
+    plastic::TensorView tensor{};
     std::copy(component.begin(), component.end(), tensor.begin());
     return tensor;
   }
   std::vector<double> memory;
-  plastic::Tensor component{};
+  plastic::TensorArrays component{};
 };
 
 Fields random_strain(const Box& box) {

@@ -49,7 +49,7 @@ class TextbookEigenstrain {
 
   std::size_t spectra_bytes() const { return static_cast<std::size_t>(parts_ * 36) * size_ * sizeof(Complex); }
 
-  void stress(const plastic::ConstTensor& strain, const plastic::Tensor& result) {
+  void stress(const plastic::TensorView& strain, const plastic::TensorArrays& result) {
     for (std::size_t c = 0; c < 6; ++c) {
       pad(strain[c], reinterpret_cast<double*>(strain_[c].get()));
       transform(strain_[c].get());

@@ -113,7 +113,7 @@ void EigenstrainDisplacement::generate(double poissons_ratio) {
   });
 }
 
-void EigenstrainDisplacement::displacement(const ConstTensor& strain, const Box& box, std::int64_t first_x,
+void EigenstrainDisplacement::displacement(const TensorView& strain, const Box& box, std::int64_t first_x,
                                            std::int64_t first_y, double* result) {
   check_tensor(strain, "strain");
   check_box(box);

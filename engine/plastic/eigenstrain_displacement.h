@@ -34,7 +34,7 @@ class EigenstrainDisplacement {
   /// result: grid.nx × grid.ny values [m]. The box's cuboid (0, 0, k) lies below node (first_x, first_y); all of it
   /// must be below the grid, with the spacings given. One call at a time; the bits do not depend on the number of
   /// threads.
-  void displacement(const ConstTensor& strain, const Box& box, std::int64_t first_x, std::int64_t first_y,
+  void displacement(const TensorView& strain, const Box& box, std::int64_t first_x, std::int64_t first_y,
                     double* result);
 
   const Grid& grid() const { return grid_; }

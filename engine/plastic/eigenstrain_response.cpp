@@ -179,7 +179,7 @@ void EigenstrainResponse::generate(double shear_modulus) {
   geometry_ = std::move(geometry);
 }
 
-void EigenstrainResponse::stress(const ConstTensor& strain, const Tensor& result) {
+void EigenstrainResponse::stress(const TensorView& strain, const TensorArrays& result) {
   check_tensor(strain, "strain");
   check_tensor(result, "result");
   const Geometry& g = *geometry_;

@@ -39,8 +39,8 @@ struct Box {
 };
 
 /// Components xx yy zz yz xz xy.
-using Tensor = std::array<double*, 6>;
-using ConstTensor = std::array<const double*, 6>;
+using TensorArrays = std::array<double*, 6>;
+using TensorView = std::array<const double*, 6>;
 
 class EigenstrainResponse {
  public:
@@ -60,7 +60,7 @@ class EigenstrainResponse {
 
   /// Residual stress [Pa] at the centres of the cuboids, six fields; the strain's may be the same memory. Components
   /// and layers without strain cost less. One call at a time; the bits do not depend on the number of threads.
-  void stress(const ConstTensor& strain, const Tensor& result);
+  void stress(const TensorView& strain, const TensorArrays& result);
 
   const Box& box() const { return box_; }
 

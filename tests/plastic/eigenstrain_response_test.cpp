@@ -306,7 +306,7 @@ TEST(EigenstrainResponse, refuses_what_is_no_box_field_or_material) {
   for (const double bad : {-1.0, 0.5, inf, nan}) EXPECT_EQ(status(good, 1, bad), Status::invalid_argument);
   EigenstrainResponse response(engine.backend, good, 1, 0.3);
   TensorField field(good, 0);
-  Tensor missing = field.pointers();
+  TensorArrays missing = field.pointers();
   missing[3] = nullptr;
   EXPECT_THROW(response.stress(static_cast<const TensorField&>(field).pointers(), missing), Error);
 }

@@ -27,13 +27,13 @@ struct Engine {
 struct TensorField {
   TensorField(const Box& box, double value) : cuboids(box.cuboids()), memory(6 * cuboids, value) {}
 
-  Tensor pointers() {
-    Tensor tensor{};
+  TensorArrays pointers() {
+    TensorArrays tensor{};
     for (std::size_t c = 0; c < 6; ++c) tensor[c] = memory.data() + c * cuboids;
     return tensor;
   }
-  ConstTensor pointers() const {
-    ConstTensor tensor{};
+  TensorView pointers() const {
+    TensorView tensor{};
     for (std::size_t c = 0; c < 6; ++c) tensor[c] = memory.data() + c * cuboids;
     return tensor;
   }
