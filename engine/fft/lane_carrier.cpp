@@ -262,19 +262,21 @@ constexpr double kAdvantage = 2.5;
 
 template <class Real>
 std::unique_ptr<const LaneCarrier<Real>> lane_carrier(const simd::TransformKernels<Real>& kernels, std::int64_t nx,
-                                                      std::int64_t ny, Boundary boundary, bool must_pay) {
+                                                      std::int64_t ny, Boundary boundary, bool must_pay,
+                                                      bool densest) {
   const std::int64_t lanes = kernels.lanes;
   if (boundary == Boundary::periodic) {
     if (nx % lanes != 0 || !is_tree_length(nx / lanes) || !is_tree_length(ny)) return nullptr;
     return std::make_unique<const ByLanes<Real>>(kernels, nx, ny, nx, ny, boundary);
   }
-  const std::int64_t length_y = cheapest_length(ny, tree_cost);
+  const auto count = [](std::int64_t n) { return static_cast<double>(n); };
+  const std::int64_t length_y = densest ? cheapest_length(ny, count) : cheapest_length(ny, tree_cost);
   // Each vector of a row costs its part of the row's transform, and of two transforms of its block's columns.
   const double of_columns = 2 * tree_cost(length_y) / static_cast<double>(length_y);
-  const std::int64_t length_x =
-      lanes * cheapest_length((nx + lanes - 1) / lanes, [&](std::int64_t n) {
-        return tree_cost(n) + of_columns * (static_cast<double>(n) + cost_of_rest(n, lanes));
-      });
+  const auto cost = [&](std::int64_t n) {
+    return densest ? count(n) : tree_cost(n) + of_columns * (count(n) + cost_of_rest(n, lanes));
+  };
+  const std::int64_t length_x = lanes * cheapest_length((nx + lanes - 1) / lanes, cost);
   const double nodes = static_cast<double>(length_x) * static_cast<double>(length_y);
   const double nodes_by_fftw = static_cast<double>(good_size(nx)) * static_cast<double>(good_size(ny));
   if (must_pay && nodes > kAdvantage * nodes_by_fftw) return nullptr;
@@ -282,8 +284,10 @@ std::unique_ptr<const LaneCarrier<Real>> lane_carrier(const simd::TransformKerne
 }
 
 template std::unique_ptr<const LaneCarrier<double>> lane_carrier<double>(const simd::TransformKernels<double>&,
-                                                                         std::int64_t, std::int64_t, Boundary, bool);
+                                                                         std::int64_t, std::int64_t, Boundary, bool,
+                                                                         bool);
 template std::unique_ptr<const LaneCarrier<float>> lane_carrier<float>(const simd::TransformKernels<float>&,
-                                                                       std::int64_t, std::int64_t, Boundary, bool);
+                                                                       std::int64_t, std::int64_t, Boundary, bool,
+                                                                       bool);
 
 }  // namespace brinell::fft

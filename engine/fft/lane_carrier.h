@@ -26,9 +26,11 @@ class LaneCarrier : public Carrier<Real> {
   virtual const simd::ColumnTransform<Real>& columns() const = 0;
 };
 
-/// Null if the transform has no such size, or if `must_pay` and FFTW would be faster.
+/// Null if the transform has no such size, or if `must_pay` and FFTW would be faster. A free grid is padded to what
+/// takes the least time, or, `densest`, to the fewest frequencies: for who does more with each than transform it.
 template <class Real>
 std::unique_ptr<const LaneCarrier<Real>> lane_carrier(const simd::TransformKernels<Real>& kernels, std::int64_t nx,
-                                                      std::int64_t ny, Boundary boundary, bool must_pay);
+                                                      std::int64_t ny, Boundary boundary, bool must_pay,
+                                                      bool densest = false);
 
 }  // namespace brinell::fft

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -22,28 +21,19 @@ namespace {
 using influence::Eigenstrain;
 using influence::Parities;
 
-/// The length >= n whose transform costs least.
-std::int64_t cheapest_tree(std::int64_t n) {
-  std::int64_t best = 0;
-  double least = std::numeric_limits<double>::infinity();
-  for (std::int64_t length = n; length <= 2 * n; ++length) {
-    if (!fft::is_tree_length(length)) continue;
-    const double cost = fft::tree_cost(length);
-    if (cost < least) {
-      least = cost;
-      best = length;
-    }
-  }
-  return best;
+/// The shortest tree of at least n values.
+std::int64_t shortest_tree(std::int64_t n) {
+  while (!fft::is_tree_length(n)) ++n;
+  return n;
 }
 
 }  // namespace
 
 struct EigenstrainResponse::Geometry {
   Geometry(const fft::Backend& backend, const Box& box)
-      : carrier(
-            fft::lane_carrier<double>(backend.kernels.in_double.transform, box.nx, box.ny, Boundary::free, false)),
-        along_z(cheapest_tree(box.nz), 1, 4),
+      : carrier(fft::lane_carrier<double>(backend.kernels.in_double.transform, box.nx, box.ny, Boundary::free, false,
+                                          true)),
+        along_z(shortest_tree(box.nz), 1, 4),
         lanes(backend.kernels.in_double.transform.lanes),
         depth(static_cast<std::size_t>(box.nz)) {
     transform.columns = carrier->columns();
