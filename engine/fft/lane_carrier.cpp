@@ -51,7 +51,7 @@ struct Frequency {
 };
 
 template <class Real>
-class ByLanes final : public Carrier<Real> {
+class ByLanes final : public LaneCarrier<Real> {
  public:
   ByLanes(const simd::TransformKernels<Real>& kernels, std::int64_t nx, std::int64_t ny, std::int64_t length_x,
           std::int64_t length_y, Boundary boundary)
@@ -70,6 +70,9 @@ class ByLanes final : public Carrier<Real> {
     columns_.ny = ny;
     columns_.tree = tree_y_.view();
   }
+
+  const simd::RowTransform<Real>& rows() const override { return rows_; }
+  const simd::ColumnTransform<Real>& columns() const override { return columns_; }
 
   Method method() const override { return Method::lanes; }
   std::int64_t padded_nx() const override { return (boundary_ == Boundary::free ? 2 : 1) * rows_.length; }
@@ -258,29 +261,33 @@ constexpr double kAdvantage = 2.5;
 }  // namespace
 
 template <class Real>
-std::unique_ptr<const Carrier<Real>> lane_carrier(const simd::TransformKernels<Real>& kernels, std::int64_t nx,
-                                                  std::int64_t ny, Boundary boundary, bool must_pay) {
+std::unique_ptr<const LaneCarrier<Real>> lane_carrier(const simd::TransformKernels<Real>& kernels, std::int64_t nx,
+                                                      std::int64_t ny, Boundary boundary, bool must_pay,
+                                                      bool densest) {
   const std::int64_t lanes = kernels.lanes;
   if (boundary == Boundary::periodic) {
     if (nx % lanes != 0 || !is_tree_length(nx / lanes) || !is_tree_length(ny)) return nullptr;
     return std::make_unique<const ByLanes<Real>>(kernels, nx, ny, nx, ny, boundary);
   }
-  const std::int64_t length_y = cheapest_length(ny, tree_cost);
+  const auto count = [](std::int64_t n) { return static_cast<double>(n); };
+  const std::int64_t length_y = densest ? cheapest_length(ny, count) : cheapest_length(ny, tree_cost);
   // Each vector of a row costs its part of the row's transform, and of two transforms of its block's columns.
   const double of_columns = 2 * tree_cost(length_y) / static_cast<double>(length_y);
-  const std::int64_t length_x =
-      lanes * cheapest_length((nx + lanes - 1) / lanes, [&](std::int64_t n) {
-        return tree_cost(n) + of_columns * (static_cast<double>(n) + cost_of_rest(n, lanes));
-      });
+  const auto cost = [&](std::int64_t n) {
+    return densest ? count(n) : tree_cost(n) + of_columns * (count(n) + cost_of_rest(n, lanes));
+  };
+  const std::int64_t length_x = lanes * cheapest_length((nx + lanes - 1) / lanes, cost);
   const double nodes = static_cast<double>(length_x) * static_cast<double>(length_y);
   const double nodes_by_fftw = static_cast<double>(good_size(nx)) * static_cast<double>(good_size(ny));
   if (must_pay && nodes > kAdvantage * nodes_by_fftw) return nullptr;
   return std::make_unique<const ByLanes<Real>>(kernels, nx, ny, length_x, length_y, boundary);
 }
 
-template std::unique_ptr<const Carrier<double>> lane_carrier<double>(const simd::TransformKernels<double>&,
-                                                                     std::int64_t, std::int64_t, Boundary, bool);
-template std::unique_ptr<const Carrier<float>> lane_carrier<float>(const simd::TransformKernels<float>&, std::int64_t,
-                                                                   std::int64_t, Boundary, bool);
+template std::unique_ptr<const LaneCarrier<double>> lane_carrier<double>(const simd::TransformKernels<double>&,
+                                                                         std::int64_t, std::int64_t, Boundary, bool,
+                                                                         bool);
+template std::unique_ptr<const LaneCarrier<float>> lane_carrier<float>(const simd::TransformKernels<float>&,
+                                                                       std::int64_t, std::int64_t, Boundary, bool,
+                                                                       bool);
 
 }  // namespace brinell::fft

@@ -18,9 +18,19 @@
 
 namespace brinell::fft {
 
-/// Null if the transform has no such size, or if `must_pay` and FFTW would be faster.
+/// What of it others build on who transform along more than x and y (plastic/eigenstrain_response.h).
 template <class Real>
-std::unique_ptr<const Carrier<Real>> lane_carrier(const simd::TransformKernels<Real>& kernels, std::int64_t nx,
-                                                  std::int64_t ny, Boundary boundary, bool must_pay);
+class LaneCarrier : public Carrier<Real> {
+ public:
+  virtual const simd::RowTransform<Real>& rows() const = 0;
+  virtual const simd::ColumnTransform<Real>& columns() const = 0;
+};
+
+/// Null if the transform has no such size, or if `must_pay` and FFTW would be faster. A free grid is padded to what
+/// takes the least time, or, `densest`, to the fewest frequencies: for who does more with each than transform it.
+template <class Real>
+std::unique_ptr<const LaneCarrier<Real>> lane_carrier(const simd::TransformKernels<Real>& kernels, std::int64_t nx,
+                                                      std::int64_t ny, Boundary boundary, bool must_pay,
+                                                      bool densest = false);
 
 }  // namespace brinell::fft

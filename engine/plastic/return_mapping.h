@@ -32,13 +32,10 @@
 
 #include "parallel/arena.h"
 #include "plastic/hardening.h"
+#include "plastic/tensor_fields.h"
 #include "simd/kernel_table.h"
 
 namespace brinell::plastic {
-
-/// One array for each of xx yy zz yz xz xy.
-using TensorView = std::array<const double*, 6>;
-using TensorArrays = std::array<double*, 6>;
 
 /// count points in layer_factor.size() layers of equally many points, one layer after the other.
 struct TrialState {

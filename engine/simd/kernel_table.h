@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "simd/contact_kernels.h"
+#include "simd/eigenstrain_kernels.h"
 #include "simd/influence_kernels.h"
 #include "simd/isa.h"
 #include "simd/return_mapping_kernels.h"
@@ -28,6 +29,7 @@ struct KernelTable {
   InfluenceKernels influence;
   SubsurfaceKernels subsurface;
   ReturnMappingKernels return_mapping;
+  EigenstrainKernels eigenstrain;
 
   template <class Real>
   const RealKernels<Real>& of() const {

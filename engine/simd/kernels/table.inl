@@ -4,6 +4,7 @@
 
 #include "simd/kernel_table.h"
 #include "simd/kernels/contact.inl"
+#include "simd/kernels/eigenstrain.inl"
 #include "simd/kernels/influence.inl"
 #include "simd/kernels/return_mapping.inl"
 #include "simd/kernels/subsurface.inl"
@@ -24,7 +25,8 @@ constexpr KernelTable make_table(Isa isa) {
           make_real_kernels<Arch, float>(),
           influence_kernels<Arch>(),
           subsurface_kernels<Arch>(),
-          return_mapping_kernels<Arch>()};
+          return_mapping_kernels<Arch>(),
+          eigenstrain_kernels<Arch>()};
 }
 
 }  // namespace
