@@ -44,7 +44,6 @@ constexpr Place kPlaces[] = {
 
 TEST(Eigenstrain, agrees_with_quadrature_of_point_forces) {
   const reference::MindlinQuadrature quadrature;
-  double worst = 0, worst_displacement = 0;
   int turn = 0;
   for (const Place& at : kPlaces) {
     const double nu = std::array{0.3, 0.0, 0.49}[turn % 3];
@@ -59,7 +58,6 @@ TEST(Eigenstrain, agrees_with_quadrature_of_point_forces) {
     for (std::size_t i = 0; i < 6; ++i) {
       for (std::size_t j = 0; j < 6; ++j) {
         const double error = std::abs(found[i][j] - static_cast<double>(expected.stress[i][j])) / scale;
-        worst = std::max(worst, error);
         EXPECT_LE(error, 1e-9) << "at " << at.x << ", " << at.y << ", " << at.z << ", depth " << at.depth
                                << ": stress " << i << " of strain " << j << " is " << found[i][j] << ", not "
                                << static_cast<double>(expected.stress[i][j]);
@@ -72,13 +70,10 @@ TEST(Eigenstrain, agrees_with_quadrature_of_point_forces) {
     for (const auto value : surface.displacement) most = std::max(most, std::abs(static_cast<double>(value)));
     for (std::size_t j = 0; j < 6; ++j) {
       const double error = std::abs(u[j] - static_cast<double>(surface.displacement[j])) / most;
-      worst_displacement = std::max(worst_displacement, error);
       EXPECT_LE(error, 1e-9) << "displacement at " << at.x << ", " << at.y << ", depth " << at.depth << " of strain "
                              << j;
     }
   }
-  RecordProperty("worst_stress", std::to_string(worst));
-  std::printf("largest errors: stress %.1e, displacement %.1e\n", worst, worst_displacement);
 }
 
 TEST(Eigenstrain, leaves_the_surface_free_of_traction) {
@@ -93,7 +88,7 @@ TEST(Eigenstrain, leaves_the_surface_free_of_traction) {
             const double scale = largest(cuboid.full_space(x, y, -depth));
             for (std::size_t j = 0; j < 6; ++j) {
               for (const int c : {kZz, kYz, kXz}) {
-                EXPECT_LE(std::abs(stress[static_cast<std::size_t>(c)][j]), 1e-10 * scale + 1e-15)
+                EXPECT_LE(std::abs(stress[static_cast<std::size_t>(c)][j]), 1e-10 * scale)
                     << "component " << c << " of strain " << j << " at " << x << ", " << y << ", depth " << depth;
               }
             }
@@ -110,7 +105,7 @@ TEST(Eigenstrain, of_a_dilatation_follows_its_closed_form) {
   // Phi.
   for (const double nu : {0.0, 0.25, 0.45}) {
     const Eigenstrain cuboid(1, 1, 1, nu);
-    for (const double depth : {0.5, 3.5, 20.5}) {
+    for (const double depth : {0.6, 3.5, 20.5}) {
       for (const double x : {0.0, 2.0, 9.0}) {
         const auto phi_z = [&](long double z) {  // derivative along z of the potential of the cuboid
           long double sum = 0;
@@ -125,7 +120,6 @@ TEST(Eigenstrain, of_a_dilatation_follows_its_closed_form) {
           }
           return sum;
         };
-        if (depth == 0.5) continue;  // Z = 0 at the corners
         const auto u = cuboid.displacement(x, 0.4, depth);
         const double expected = static_cast<double>((1 + nu) / std::numbers::pi * phi_z(depth));
         EXPECT_NEAR(u[kXx] + u[kYy] + u[kZz], expected, 1e-12 * std::abs(expected) + 1e-15);

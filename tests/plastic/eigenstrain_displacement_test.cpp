@@ -128,9 +128,9 @@ TEST(EigenstrainDisplacement, is_reciprocal_to_the_stress_below_a_pressure) {
   EXPECT_LE(worst, 0.02 * most);
 }
 
-TEST(EigenstrainDisplacement, of_squeezed_material_is_a_heave) {
-  // Material pressed flatter along z flows sideways (xx = yy = 1/2, zz = −1): the surface above sinks. The reverse
-  // heaves, which is negative.
+TEST(EigenstrainDisplacement, of_squeezed_material_is_positive_and_symmetric) {
+  // Material pressed flatter along z flows sideways (xx = yy = 1/2, zz = −1): the surface above sinks,
+  // which is positive.
   const Grid grid{15, 15, 1, 1};
   const Box box{3, 3, 2, 1, 1, 1};
   TensorField strain(box, 0);
@@ -140,7 +140,6 @@ TEST(EigenstrainDisplacement, of_squeezed_material_is_a_heave) {
   }
   const std::vector<double> u = displacement_of(Engine(), grid, box, {6, 6}, strain);
   EXPECT_GT(u[7 * 15 + 7], 0.5);
-  // The box of ten cuboids' depth has its volume: what sinks is what heaves around it and far away.
   for (std::int64_t j = 0; j < 15; ++j) {
     for (std::int64_t i = 0; i < 15; ++i) {
       EXPECT_NEAR(u[static_cast<std::size_t>(j * 15 + i)], u[static_cast<std::size_t>((14 - j) * 15 + i)], 1e-14);
