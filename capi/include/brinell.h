@@ -18,8 +18,8 @@
  *
  * Units are SI everywhere: m, N, Pa, rad, s. Surface fields are row-major with x inner: node (i, j) is element
  * j*nx + i and lies at ((i - (nx-1)/2)*dx, (j - (ny-1)/2)*dy). Pressure is positive in compression; it is uniform
- * on the cell around its node. The deformed gap is gap + displacement - approach,
- * plus the plane sx*x + sy*y where the bodies are tilted.
+ * on the cell around its node. The deformed gap is gap + displacement - approach, plus the plane sx*x + sy*y where
+ * the bodies are tilted.
  *
  * Rules of this interface
  *   - Every call that can fail returns a brn_status. A message for a person, which names the argument, its value and
@@ -29,8 +29,8 @@
  *     this interface.
  *   - Option structs begin with struct_size. Initialise them with their brn_..._init function, which is compiled into
  *     the caller and so fills in the caller's size, and the defaults. Members are only ever appended; the engine
- * reads those that struct_size covers and uses the defaults for the others, and writes only those of a result that
- *     struct_size covers.
+ *     reads those that struct_size covers and uses the defaults for the others, and writes only those of a result
+ *     that struct_size covers.
  *   - The caller owns all arrays; they are borrowed for the duration of the call.
  *   - An engine may be used from several threads at once. A scene or run is used by one thread at a time; a second
  *     one gets BRN_WRONG_STATE. Distinct runs work concurrently on one engine.
@@ -308,7 +308,13 @@ enum {
 };
 
 /* One leg of the load history: from the state before it to `target` in equal increments. The first leg starts from
- * zero force, or from the approach min(0, first touch). */
+ * zero force, or from the approach min(0, first touch). Where the force acts, or the slopes, are the step's own from
+ * its first increment on.
+ *
+ * The bodies stay parallel unless a step says otherwise: to press beside the centre,
+ *   step.rotation = BRN_ROTATION_FREE; step.eccentricity[0] = 1e-3;
+ * and brn_increment.tilt tells how they turned. A force at the centre keeps only symmetric bodies parallel when they
+ * may rotate. BRN_NO_EQUILIBRIUM: no contact can carry the force where it acts. */
 typedef struct brn_step {
   size_t struct_size;
   int32_t drive;            /* BRN_DRIVE_...: mean pressure on periodic grids only */
