@@ -568,6 +568,8 @@ enum {
   BRN_FIELD_PRINCIPAL_1 = 24, /* the largest */
   BRN_FIELD_PRINCIPAL_2 = 25,
   BRN_FIELD_PRINCIPAL_3 = 26,
+  BRN_FIELD_PRINCIPAL_DIRECTIONS = 27, /* unit vectors of principal stresses 1 to 3, one after the other: nine numbers
+                                          of each node, side by side, [-]; their signs have no meaning */
   /* Below the upper body's surface: */
   BRN_FIELD_UPPER_STRESS = 120,
   BRN_FIELD_UPPER_VON_MISES = 121,
@@ -575,17 +577,18 @@ enum {
   BRN_FIELD_UPPER_HYDROSTATIC = 123,
   BRN_FIELD_UPPER_PRINCIPAL_1 = 124,
   BRN_FIELD_UPPER_PRINCIPAL_2 = 125,
-  BRN_FIELD_UPPER_PRINCIPAL_3 = 126
+  BRN_FIELD_UPPER_PRINCIPAL_3 = 126,
+  BRN_FIELD_UPPER_PRINCIPAL_DIRECTIONS = 127
 };
 
 /* Copies a field of the last solved increment: nx*ny doubles on the surface; below it layers*ny*nx, element
- * (layer*ny + j)*nx + i, each of the stress six numbers. *count receives the number needed; values may be NULL if
- * capacity is 0 (that returns BRN_OK: a query of the size). A run that was loaded, or whose stress is missing,
- * computes it here. BRN_WRONG_STATE: the scene does not ask for this field. */
+ * (layer*ny + j)*nx + i, each of the stress six numbers, of directions nine. *count receives the number needed;
+ * values may be NULL if capacity is 0 (that returns BRN_OK: a query of the size). A run that was loaded, or whose
+ * stress is missing, computes it here. BRN_WRONG_STATE: the scene does not ask for this field. */
 BRN_API brn_status brn_run_get_field(brn_run *run, int32_t field, double *values, size_t capacity, size_t *count);
 
 /* The same for one layer of a field below the surface, counted from the uppermost: nx*ny doubles, six times as many
- * of the stress. */
+ * of the stress, nine times of directions. */
 BRN_API brn_status brn_run_get_layer(brn_run *run, int32_t field, int64_t layer, double *values, size_t capacity,
                                      size_t *count);
 

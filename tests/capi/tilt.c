@@ -230,7 +230,9 @@ static void a_run_resumes_within_its_history(void) {
     CHECK(whole.balance == resumed.balance && whole.iterations == resumed.iterations);
     brn_run_destroy(run);
   }
-  CHECK(whole.approach == 2e-9 && fabs(whole.centre_of_force[0] - 1e-6) <= place_tolerance);
+  CHECK(fabs(whole.centre_of_force[0] - 1e-6) <= place_tolerance);
+  /* met to the certificate's part of the depth under the force, which is less than twice that at the centre */
+  CHECK(fabs(whole.approach - 2e-9) <= 2e-8 * 2e-9);
   brn_scene_destroy(different);
   brn_scene_destroy(scene);
   brn_engine_destroy(other);
