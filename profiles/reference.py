@@ -5,7 +5,9 @@ Needs numpy, scipy and h5py; nothing else in the repository needs this program. 
 one thing only: the undeformed gap of a synthesised surface. Measured surfaces are read here.
 
 Smooth sphere: the closed form of Hertz. Everything else: the conjugate gradients of Polonsky and Keer (Wear 231, 1999,
-206-219) as in the paper, two convolutions an iteration, from a uniform pressure. Displacement of a free half-space:
+206-219) as in the paper, two convolutions an iteration, from a uniform pressure. Where a step says where its force acts,
+they solve for given slopes, and Newton's method around them finds the slopes (Spinu and Diaconescu, IJTC 2008), with a
+Jacobian by finite differences that Broyden's formula keeps up. Displacement of a free half-space:
 u = K * p with the coefficients of a uniformly loaded rectangle (Love, Phil. Trans. R. Soc. A 228, 1929, 377-420; Johnson,
 Contact Mechanics, 1985, eq. 3.25) in long double on a grid of twice the size; of a periodic one:
 u(q) = 2 p(q) / (E* |q|), u(0) = 0 (Johnson, section 13.2). Deformed gap: gap + u - approach. Lengths in m, pressure in
@@ -83,7 +85,26 @@ def synthesised_gap(program, scene_file):
             return file["step_0/increment_0/undeformed_gap"][()], tuple(file.attrs["spacing"][:2])
 
 
-def gap_of(program, scene_file, surface):
+def places(scene):
+    """x of the columns and y of the rows [m], from the grid's centre."""
+    return ((np.arange(n) - (n - 1) / 2) * d for n, d in zip(scene["grid"]["nodes"], scene["grid"]["spacing"]))
+
+
+def shape_gap(scene, surface):
+    """Parabolic arcs: beyond the flat of a punch; beyond the straight part of a roller and across it."""
+    if surface.get("profile", "parabolic") != "parabolic":
+        raise ValueError("expected parabolic arcs")
+    x, y = places(scene)
+    if surface["shape"] == "flat_punch":
+        beyond = np.maximum(np.hypot(x[None, :], y[:, None]) - surface["radius"], 0)
+        return beyond**2 / (2 * surface["edge_radius"])
+    beyond = np.maximum(np.abs(x) - surface["straight_length"] / 2, 0)
+    return (beyond**2 / (2 * surface["crown_radius"]))[None, :] + (y**2 / (2 * surface["radius"]))[:, None]
+
+
+def gap_of(program, scene_file, scene, surface):
+    if surface["shape"] in ("flat_punch", "roller"):
+        return shape_gap(scene, surface), scene["grid"]["spacing"]
     if surface["shape"] == "rough":
         return synthesised_gap(program, scene_file)
     path = scene_file.parent / surface["path"]
@@ -167,6 +188,39 @@ def polonsky_keer(displacement, gap, total, p, tolerance, most=20000):
     raise RuntimeError(f"no convergence in {most} iterations, error {error / largest:.1e}")
 
 
+def newton_for_slopes(displacement, gap, total, p, place, centre, slopes, tolerance):
+    """Slopes of the plane on the gap that bring the centre of the pressure to `centre`, and what polonsky_keer gives.
+
+    place: (x, y) of all nodes [m]. Ends when the centre is met to a tenth of CERTIFICATE times half the grid. Returns
+    slopes, d centre / d slopes, number of solutions, and the solution.
+    """
+    half = np.array([place[0].max(), place[1].max()])
+    solutions = 0
+
+    def solve(slopes, p):
+        nonlocal solutions
+        solutions += 1
+        solution = polonsky_keer(displacement, gap + slopes[0] * place[0] + slopes[1] * place[1], total, p, tolerance)
+        return solution, np.array([(solution[0] * axis).sum() for axis in place]) / total - centre
+
+    solution, miss = solve(slopes, p)
+    jacobian = np.empty((2, 2))
+    for k in range(2):
+        extent = np.abs(place[k][solution[0] > 0]).max()
+        change = np.zeros(2)
+        change[k] = 1e-4 * solution[3] / extent
+        jacobian[:, k] = (solve(slopes + change, solution[0])[1] - miss) / change[k]
+    while (np.abs(miss) > 0.1 * CERTIFICATE * half).any():
+        change = np.linalg.solve(jacobian, -miss)
+        slopes = slopes + change
+        before = miss
+        solution, miss = solve(slopes, solution[0])
+        jacobian += np.outer(miss - before - jacobian @ change, change) / (change @ change)
+        if solutions > 60:
+            raise RuntimeError(f"no slopes: the centre of the pressure is {miss} m off")
+    return slopes, jacobian, solutions, solution
+
+
 # -------------------------------------------------------------------------------------------------------- references
 
 
@@ -175,8 +229,9 @@ def quantity(value, tolerance, source):
 
 
 def contact_modulus(scene):
-    compliance = sum((1 - body["poissons_ratio"]**2) / body["youngs_modulus"]
-                     for body in (scene["lower"], scene["upper"]) if not body.get("rigid"))
+    bodies = (scene["lower"], scene["lower"] if scene["upper"].get("same_as_lower") else scene["upper"])
+    compliance = sum((1 - body["poissons_ratio"]**2) / body["youngs_modulus"] for body in bodies
+                     if not body.get("rigid"))
     return 1 / compliance
 
 
@@ -203,7 +258,7 @@ def hertz(scene):
     modulus, radius = contact_modulus(scene), scene["surface"][0]["radius"]
     nx, ny = scene["grid"]["nodes"]
     dx, dy = scene["grid"]["spacing"]
-    x, y = ((np.arange(n) - (n - 1) / 2) * d for n, d in ((nx, dx), (ny, dy)))
+    x, y = places(scene)
     square = x[None, :]**2 + y[:, None]**2
     for step, increment, force in load_levels(scene, dx * dy, nx * ny):
         a = (3 * force * radius / (4 * modulus))**(1 / 3)
@@ -236,7 +291,9 @@ def solved(scene, gap, spacing):
     Tolerances follow from the certificate: deformed gaps are uncertain by CERTIFICATE * u, u the largest displacement
     (slack 10 for approach and mean gap, which are averages over all of the contact). A pressure answers a gap at its own
     node through the stiffest mode of the grid, whose compliance per unit of E* is `least`; nodes that such a change can
-    open or close decide the tolerance of the contact area.
+    open or close decide the tolerance of the contact area. Slopes are uncertain by those gaps over the contact's half
+    extent, and by what moments within CERTIFICATE (times force and half the grid) leave open. Where the pressure peaks
+    is left out for bodies that tilt: their symmetry gives two or more nodes the same peak.
     """
     ny, nx = gap.shape
     dx, dy = spacing
@@ -246,10 +303,23 @@ def solved(scene, gap, spacing):
     displacement = (displacement_of_periodic if periodic else displacement_of_free)(nx, ny, dx, dy)
     q = wave_numbers(nx, ny, dx, dy)
     least = 2 / q.max()
+    place = np.meshgrid((np.arange(nx) - (nx - 1) / 2) * dx, (np.arange(ny) - (ny - 1) / 2) * dy)
+    half = np.array([nx * dx, ny * dy]) / 2
     p = np.ones_like(gap)
+    slopes = np.zeros(2)
     for step, increment, force in load_levels(scene, cell, nx * ny):
-        p, r, approach, largest, iterations, error = polonsky_keer(displacement, gap, force / (modulus * cell), p, SOLVED)
-        source = "polonsky_keer"
+        total = force / (modulus * cell)
+        if "tilt" in scene["step"][step]:
+            raise ValueError("expected eccentricities, not slopes")
+        eccentricity = scene["step"][step].get("eccentricity")
+        if eccentricity is None:
+            p, r, approach, largest, iterations, error = polonsky_keer(displacement, gap, total, p, SOLVED)
+        else:
+            slopes, jacobian, solutions, solution = newton_for_slopes(
+                displacement, gap, total, p, place, np.array(eccentricity), slopes, SOLVED)
+            p, r, approach, largest, iterations, error = solution
+            print(f"    slopes {slopes} from {solutions} solutions")
+        source = "polonsky_keer" if eccentricity is None else "newton"
         contact = p > 0
         if periodic and contact.all():
             closed = force / (modulus * cell * nx * ny) - scipy.fft.irfft2(scipy.fft.rfft2(gap) * q / 2, gap.shape)
@@ -261,6 +331,13 @@ def solved(scene, gap, spacing):
         at = np.unravel_index(p.argmax(), p.shape)
         print(f"    step {step} increment {increment}: {iterations} iterations, error {error:.1e}, {nodes} nodes "
               f"(unsure {unsure}), approach {approach:.12g}, largest pressure {p.max() * modulus:.10g}", flush=True)
+        turning = {"max_pressure_at": quantity([(at[1] - (nx - 1) / 2) * dx, (at[0] - (ny - 1) / 2) * dy],
+                                               1e-3 * min(dx, dy), source)}
+        if eccentricity is not None:
+            extents = np.array([np.abs(axis[contact]).max() for axis in place])
+            open_moments = np.abs(np.linalg.inv(jacobian)) @ (CERTIFICATE * half)
+            turning = {"tilt": quantity(list(slopes), list(10 * slip / extents + open_moments), source),
+                       "centre_of_force": quantity(list(eccentricity), list(CERTIFICATE * half), "load")}
         yield {"step": step, "increment": increment,
                "normal_force": quantity(force, CERTIFICATE * force, "load"),
                "approach": quantity(approach, 10 * slip, source),
@@ -268,9 +345,7 @@ def solved(scene, gap, spacing):
                "contact_area": quantity(nodes * cell, (unsure + 1e-9) * cell, source),
                "contact_nodes": quantity(nodes, unsure, source),
                "max_pressure": quantity(p.max() * modulus, slip / least * modulus, source),
-               "max_pressure_at": quantity([(at[1] - (nx - 1) / 2) * dx, (at[0] - (ny - 1) / 2) * dy],
-                                           1e-3 * min(dx, dy), source),
-               "mean_gap": quantity(r.mean(), 10 * slip, source)}
+               "mean_gap": quantity(r.mean(), 10 * slip, source), **turning}
 
 
 SOLVED_SOURCES = {
@@ -279,7 +354,13 @@ SOLVED_SOURCES = {
                      f"their own, profiles/reference.py, solved to {SOLVED:g}. Tolerance: what a certificate of "
                      f"{CERTIFICATE:g} leaves open, derived there"}
 
+NEWTON = ("as polonsky_keer, with Newton's method around it for the slopes that put the force where the scene says, its "
+          "Jacobian by finite differences and Broyden's formula. Tolerance: what a certificate of "
+          f"{CERTIFICATE:g} leaves open, derived there")
+
 SURFACE_SOURCES = {
+    "flat_punch": "smallest value of the shape's formula at the nodes; tolerance: rounding",
+    "roller": "smallest value of the shape's formula at the nodes; tolerance: rounding",
     "file": "the measured file, read and levelled by profiles/reference.py; tolerance: rounding",
     "rough": "the undeformed gap of the synthesised surface as brinell writes it; tolerance: rounding"}
 
@@ -296,10 +377,13 @@ def reference(program, folder):
     if surface["shape"] == "sphere":
         sources, increments = HERTZ_SOURCES, list(hertz(scene))
     else:
-        increments = list(solved(scene, *gap_of(program, scene_file, surface)))
+        increments = list(solved(scene, *gap_of(program, scene_file, scene, surface)))
         sources = {**SOLVED_SOURCES, "surface": SURFACE_SOURCES[surface["shape"]]}
         if any(i["approach"]["source"] == "full_contact" for i in increments):
             sources["full_contact"] = FULL_CONTACT
+        if any(i["approach"]["source"] == "newton" for i in increments):
+            del sources["polonsky_keer"]
+            sources["newton"] = NEWTON.replace("as polonsky_keer", SOLVED_SOURCES["polonsky_keer"].split(". ")[0])
     return {"title": scene["title"], "certificate": CERTIFICATE, "sources": sources, "increments": increments}
 
 

@@ -10,6 +10,8 @@
 
 namespace brinell::bench {
 
+constexpr double kPunchRadius = 0.5 / 1.4;  // of the scene "punch"
+
 struct SolveScene {
   std::string name;
   std::string words;

@@ -25,6 +25,9 @@ table threads 'Two threads against one (wall time)' --sizes 512,1024,2048 --scen
 table small 'Small grids are not slowed down by threads (wall time)' --sizes 64,128 --scenes rough_5,sphere \
   --methods double --threads 1,2 --repeats 40
 
+printf '\n### A force beside the centre\n\n'
+"$1/bench/solve/compare_tilt"
+
 printf '\n### Memory bandwidth (STREAM triad)\n\n| MB of each array | threads | GB/s |\n|--:|--:|--:|\n'
 "$triad" --benchmark_format=csv --benchmark_min_time=0.3 2>/dev/null |
   awk -F, '/bm_stream_triad/ {split($1, part, "/"); gsub(/"/, "", part[3]); printf "| %s | %s | %.1f |\n", part[2], part[3], $6 / 1e9}'

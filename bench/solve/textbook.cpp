@@ -14,14 +14,14 @@ Textbook::Textbook(const Grid& grid, Boundary boundary, const double* gap)
     : nodes_(grid.nodes()),
       unit_(grid.dx),
       compliance_(grid.nx, grid.ny, boundary),
-      gap_(gap, gap + nodes_),
+      gap_(nodes_),
       p_(nodes_),
       g_(nodes_),
       r_(nodes_),
       t_(nodes_),
       q_(nodes_),
       u_(nodes_) {
-  for (double& value : gap_) value /= unit_;
+  set_gap(gap);
   const Grid unit{grid.nx, grid.ny, 1, grid.dy / grid.dx};
   if (boundary == Boundary::periodic) {
     compliance_.set_symbol(
@@ -32,6 +32,10 @@ Textbook::Textbook(const Grid& grid, Boundary boundary, const double* gap)
         .fill(parallel::Arena(1), simd::best_kernels(), unit.nx, unit.ny, g_.data());
     compliance_.set_kernel(g_.data());
   }
+}
+
+void Textbook::set_gap(const double* gap) {
+  for (std::size_t i = 0; i < nodes_; ++i) gap_[i] = gap[i] / unit_;
 }
 
 TextbookSolution Textbook::solve(contact::Drive drive, double target, double tolerance, std::int32_t max_iterations,

@@ -38,6 +38,9 @@ class Textbook {
   /// Plans the transforms by measure and fills the spectrum. gap [m] is copied.
   Textbook(const Grid& grid, Boundary boundary, const double* gap);
 
+  /// Instead of the gap [m] so far. Copied.
+  void set_gap(const double* gap);
+
   /// target: Σ p, or the approach [m]. observe, if not empty, is told the state before every
   /// iteration and at the end; pressure() belongs to it.
   TextbookSolution solve(contact::Drive drive, double target, double tolerance, std::int32_t max_iterations,

@@ -71,7 +71,7 @@ class Builder {
     set_body(BRN_LOWER, file_.lower);
     set_body(BRN_UPPER, file_.upper.same_as_lower ? file_.lower : file_.upper);
     for (std::size_t k = 0; k < file_.surfaces.size(); ++k) add_surface(file_.surfaces[k], k, grid);
-    for (const auto& step : file_.steps) add_step(step);
+    for (const auto& step : file_.steps) add_step(step, grid);
     set_subsurface();
     brn_solver solver;
     brn_solver_init(&solver);
@@ -207,7 +207,27 @@ class Builder {
     }
   }
 
-  void add_step(const StepPart& part) const {
+  /// The engine would tell it without the line.
+  void require_rotation(const StepPart& part, const brn_grid& grid, const std::string& label) const {
+    const char* key = part.eccentricity ? "eccentricity" : "tilt";
+    if ((part.eccentricity || part.tilt) && grid.boundary == BRN_BOUNDARY_PERIODIC) {
+      fail(part.line,
+           label + ": " + key + " is for boundary = \"free\" only: on a periodic grid a plane has no slope");
+    }
+    if (!part.eccentricity) return;
+    const auto [x, y] = *part.eccentricity;
+    const double last_x = 0.5 * static_cast<double>(grid.nx - 1) * grid.dx;
+    const double last_y = 0.5 * static_cast<double>(grid.ny - 1) * grid.dy;
+    if (std::abs(x) > last_x || std::abs(y) > last_y) {
+      fail(part.line, label + ": eccentricity = [" + number_text(x) + ", " + number_text(y) +
+                          "] m lies outside the grid, whose last nodes are at [" + number_text(last_x) + ", " +
+                          number_text(last_y) + "] m; no contact can carry such a force");
+    }
+  }
+
+  void add_step(const StepPart& part, const brn_grid& grid) const {
+    const std::string label = "[[step]] " + std::to_string(&part - file_.steps.data() + 1);
+    require_rotation(part, grid, label);
     brn_step step;
     brn_step_init(&step);
     step.increments = part.increments;
@@ -219,8 +239,7 @@ class Builder {
       step.rotation = BRN_ROTATION_FREE;
       std::copy_n(part.eccentricity->data(), 2, step.eccentricity);
     }
-    accept(brn_scene_add_step(scene_.get(), &step), part.line,
-           "[[step]] " + std::to_string(&part - file_.steps.data() + 1));
+    accept(brn_scene_add_step(scene_.get(), &step), part.line, label);
   }
 
   /// Layers are read only if [output] asks for something below the surface.
@@ -289,6 +308,9 @@ FieldInfo field_info(const std::string& name) {
   const std::string of_body = is_upper ? name.substr(6) : name;
   constexpr const char* kStresses[] = {"stress",      "von_mises",   "tresca",     "hydrostatic",
                                        "principal_1", "principal_2", "principal_3"};
+  if (of_body == "principal_directions") {
+    return {is_upper ? BRN_FIELD_UPPER_PRINCIPAL_DIRECTIONS : BRN_FIELD_PRINCIPAL_DIRECTIONS, "1"};
+  }
   for (int k = 0; k < 7; ++k) {
     if (of_body == kStresses[k]) return {(is_upper ? BRN_FIELD_UPPER_STRESS : BRN_FIELD_STRESS) + k, "Pa"};
   }

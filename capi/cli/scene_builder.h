@@ -22,6 +22,9 @@ struct FieldInfo {
 
   bool is_below_surface() const { return id >= BRN_FIELD_STRESS; }
   bool is_tensor() const { return id == BRN_FIELD_STRESS || id == BRN_FIELD_UPPER_STRESS; }
+  bool is_directions() const {
+    return id == BRN_FIELD_PRINCIPAL_DIRECTIONS || id == BRN_FIELD_UPPER_PRINCIPAL_DIRECTIONS;
+  }
 };
 FieldInfo field_info(const std::string& name);
 

@@ -86,6 +86,7 @@ class Solve {
       values.resize(count);
       check(brn_run_get_field(parts_.run, info.id, values.data(), values.size(), &count), parts_.run);
       const FieldKind kind = info.is_tensor()          ? FieldKind::tensor
+                             : info.is_directions()    ? FieldKind::directions
                              : info.is_below_surface() ? FieldKind::scalar
                                                        : FieldKind::surface;
       fields_->add({name, kind}, info.unit, values);

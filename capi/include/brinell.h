@@ -19,8 +19,8 @@
  *
  * Units are SI everywhere: m, N, Pa, rad, s. Surface fields are row-major with x inner: node (i, j) is element
  * j*nx + i and lies at ((i - (nx-1)/2)*dx, (j - (ny-1)/2)*dy). Pressure is positive in compression; it is uniform
- * on the cell around its node. The deformed gap is gap + displacement - approach,
- * plus the plane sx*x + sy*y where the bodies are tilted.
+ * on the cell around its node. The deformed gap is gap + displacement - approach, plus the plane sx*x + sy*y where
+ * the bodies are tilted.
  *
  * Rules of this interface
  *   - Every call that can fail returns a brn_status. A message for a person, which names the argument, its value and
@@ -30,8 +30,8 @@
  *     this interface.
  *   - Option structs begin with struct_size. Initialise them with their brn_..._init function, which is compiled into
  *     the caller and so fills in the caller's size, and the defaults. Members are only ever appended; the engine
- * reads those that struct_size covers and uses the defaults for the others, and writes only those of a result that
- *     struct_size covers.
+ *     reads those that struct_size covers and uses the defaults for the others, and writes only those of a result
+ *     that struct_size covers.
  *   - The caller owns all arrays; they are borrowed for the duration of the call.
  *   - An engine may be used from several threads at once. A scene or run is used by one thread at a time; a second
  *     one gets BRN_WRONG_STATE. Distinct runs work concurrently on one engine.
@@ -309,7 +309,13 @@ enum {
 };
 
 /* One leg of the load history: from the state before it to `target` in equal increments. The first leg starts from
- * zero force, or from the approach min(0, first touch). */
+ * zero force, or from the approach min(0, first touch). Where the force acts, or the slopes, are the step's own from
+ * its first increment on.
+ *
+ * The bodies stay parallel unless a step says otherwise: to press beside the centre,
+ *   step.rotation = BRN_ROTATION_FREE; step.eccentricity[0] = 1e-3;
+ * and brn_increment.tilt tells how they turned. A force at the centre keeps only symmetric bodies parallel when they
+ * may rotate. BRN_NO_EQUILIBRIUM: no contact can carry the force where it acts. */
 typedef struct brn_step {
   size_t struct_size;
   int32_t drive;            /* BRN_DRIVE_...: mean pressure on periodic grids only */
@@ -563,6 +569,8 @@ enum {
   BRN_FIELD_PRINCIPAL_1 = 24, /* the largest */
   BRN_FIELD_PRINCIPAL_2 = 25,
   BRN_FIELD_PRINCIPAL_3 = 26,
+  BRN_FIELD_PRINCIPAL_DIRECTIONS = 27, /* unit vectors of principal stresses 1 to 3, one after the other: nine numbers
+                                          of each node, side by side, [-]; their signs have no meaning */
   /* Below the upper body's surface: */
   BRN_FIELD_UPPER_STRESS = 120,
   BRN_FIELD_UPPER_VON_MISES = 121,
@@ -570,17 +578,18 @@ enum {
   BRN_FIELD_UPPER_HYDROSTATIC = 123,
   BRN_FIELD_UPPER_PRINCIPAL_1 = 124,
   BRN_FIELD_UPPER_PRINCIPAL_2 = 125,
-  BRN_FIELD_UPPER_PRINCIPAL_3 = 126
+  BRN_FIELD_UPPER_PRINCIPAL_3 = 126,
+  BRN_FIELD_UPPER_PRINCIPAL_DIRECTIONS = 127
 };
 
 /* Copies a field of the last solved increment: nx*ny doubles on the surface; below it layers*ny*nx, element
- * (layer*ny + j)*nx + i, each of the stress six numbers. *count receives the number needed; values may be NULL if
- * capacity is 0 (that returns BRN_OK: a query of the size). A run that was loaded, or whose stress is missing,
- * computes it here. BRN_WRONG_STATE: the scene does not ask for this field. */
+ * (layer*ny + j)*nx + i, each of the stress six numbers, of directions nine. *count receives the number needed;
+ * values may be NULL if capacity is 0 (that returns BRN_OK: a query of the size). A run that was loaded, or whose
+ * stress is missing, computes it here. BRN_WRONG_STATE: the scene does not ask for this field. */
 BRN_API brn_status brn_run_get_field(brn_run *run, int32_t field, double *values, size_t capacity, size_t *count);
 
 /* The same for one layer of a field below the surface, counted from the uppermost: nx*ny doubles, six times as many
- * of the stress. */
+ * of the stress, nine times of directions. */
 BRN_API brn_status brn_run_get_layer(brn_run *run, int32_t field, int64_t layer, double *values, size_t capacity,
                                      size_t *count);
 

@@ -57,8 +57,8 @@ scene::Field checked_field(int32_t field) {
   if (!known) {
     fail(Status::invalid_argument,
          "field = " + std::to_string(field) +
-             ": allowed are 1 (pressure) to 4 (undeformed_gap), 20 (stress) to 26 (principal_3) and 120 "
-             "(upper_stress) to 126 (upper_principal_3)");
+             ": allowed are 1 (pressure) to 4 (undeformed_gap), 20 (stress) to 27 (principal_directions) and 120 "
+             "(upper_stress) to 127 (upper_principal_directions)");
   }
   return *known;
 }

@@ -93,7 +93,7 @@ class Passes {
   template <class Totals, class Body>
   Totals over_blocks(const Body& body);
 
-  static constexpr std::int64_t kBlock = 512;  // nodes; two pages of doubles, and a multiple of every register
+  static constexpr std::int64_t kBlock = simd::kLongestStretch;  // two pages of doubles, a multiple of every register
   static constexpr std::int64_t kChunk = 16 * kBlock;
 
   const parallel::Arena& arena_;

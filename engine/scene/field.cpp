@@ -13,7 +13,7 @@ struct Known {
   std::optional<subsurface::Invariant> invariant;
 };
 
-constexpr std::array<Known, 11> kKnown{{
+constexpr std::array<Known, 12> kKnown{{
     {Field::pressure, "pressure", {}},
     {Field::gap, "gap", {}},
     {Field::displacement, "displacement", {}},
@@ -25,6 +25,7 @@ constexpr std::array<Known, 11> kKnown{{
     {Field::principal_1, "principal_1", subsurface::Invariant::principal_1},
     {Field::principal_2, "principal_2", subsurface::Invariant::principal_2},
     {Field::principal_3, "principal_3", subsurface::Invariant::principal_3},
+    {Field::principal_directions, "principal_directions", {}},
 }};
 
 Field of_lower_body(Field field) {
@@ -64,8 +65,13 @@ std::optional<subsurface::Invariant> invariant_of(Field field) {
   return known(field).invariant;
 }
 
+bool is_stress(Field field) {
+  return of_lower_body(field) == Field::stress;
+}
+
 std::size_t values_per_node(Field field) {
-  return of_lower_body(field) == Field::stress ? static_cast<std::size_t>(subsurface::kComponents) : 1;
+  if (is_stress(field)) return subsurface::kComponents;
+  return of_lower_body(field) == Field::principal_directions ? 9 : 1;
 }
 
 }  // namespace brinell::scene

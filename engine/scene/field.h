@@ -23,6 +23,7 @@ enum class Field : std::int32_t {
   principal_1 = 24,
   principal_2 = 25,
   principal_3 = 26,
+  principal_directions = 27,
 };
 inline constexpr std::int32_t kUpperField = 100;
 
@@ -36,7 +37,8 @@ std::string name(Field field);
 
 /// Of a field below the surface:
 Which body_of(Field field);
-std::optional<subsurface::Invariant> invariant_of(Field field);  // nothing: all six components
-std::size_t values_per_node(Field field);                        // of a tensor 6, else 1
+std::optional<subsurface::Invariant> invariant_of(Field field);  // nothing: the stress, or directions
+bool is_stress(Field field);                                     // all six components
+std::size_t values_per_node(Field field);                        // of the stress 6, of directions 9, else 1
 
 }  // namespace brinell::scene

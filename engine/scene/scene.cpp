@@ -82,7 +82,7 @@ bool Subsurface::wants(Which body) const {
 bool Subsurface::wants_max_von_mises(Which body) const {
   return max_von_mises[static_cast<int>(body)] || std::any_of(fields.begin(), fields.end(), [&](Field field) {
            return body_of(field) == body &&
-                  invariant_of(field).value_or(subsurface::Invariant::von_mises) == subsurface::Invariant::von_mises;
+                  (is_stress(field) || invariant_of(field) == subsurface::Invariant::von_mises);
          });
 }
 

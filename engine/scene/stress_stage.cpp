@@ -36,8 +36,10 @@ subsurface::StressRequest request_for(const Scene& scene, Which body, subsurface
     if (body_of(field) != body) continue;
     if (const auto invariant = invariant_of(field)) {
       request.invariants.add(*invariant);
-    } else {
+    } else if (is_stress(field)) {
       request.components = subsurface::kAllComponents;
+    } else {
+      request.directions = true;
     }
   }
   if (wanted.wants_max_von_mises(body)) request.maxima.add(subsurface::Invariant::von_mises);
@@ -138,7 +140,9 @@ std::array<LargestVonMises, 2> StressStage::compute(const double* pressure, doub
 /// Copies a layer of one body into the fields, components of a node side by side.
 void StressStage::keep(Which body, const subsurface::StressLayer& layer) {
   const auto nodes = static_cast<std::int64_t>(scene_.grid().nodes());
-  for (auto& [field, values] : fields_) {
+  for (auto& entry : fields_) {
+    const Field field = entry.first;
+    Buffer<double>& values = entry.second;
     if (body_of(field) != body) continue;
     const auto width = static_cast<std::int64_t>(values_per_node(field));
     double* target = values.data() + layer.layer * nodes * width;
@@ -149,10 +153,9 @@ void StressStage::keep(Which body, const subsurface::StressLayer& layer) {
         std::copy(source + begin, source + end, target + begin);
         return;
       }
+      const double* const* sources = is_stress(field) ? layer.component.data() : layer.direction.data();
       for (std::int64_t n = begin; n < end; ++n) {
-        for (std::int64_t c = 0; c < width; ++c) {
-          target[n * width + c] = layer.component[static_cast<std::size_t>(c)][n];
-        }
+        for (std::int64_t c = 0; c < width; ++c) target[n * width + c] = sources[c][n];
       }
     });
   }

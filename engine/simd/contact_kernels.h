@@ -11,6 +11,9 @@
 
 namespace brinell::simd {
 
+/// Nodes of a block at most, where the bodies may tilt.
+constexpr std::size_t kLongestStretch = 512;
+
 /// value + slope·i at node i of the block; the slope is read where the bodies may tilt.
 struct Line {
   double value = 0;

@@ -222,6 +222,62 @@ static void the_upper_body_mirrors_the_lower_one(void) {
   brn_engine_destroy(engine);
 }
 
+/* Each direction turns the stress into its principal one, and directions alone bring no largest value along. */
+static void directions_are_those_of_the_principal_stresses(void) {
+  static const int32_t all[] = {BRN_FIELD_STRESS, BRN_FIELD_PRINCIPAL_DIRECTIONS, BRN_FIELD_PRINCIPAL_1,
+                                BRN_FIELD_PRINCIPAL_2, BRN_FIELD_PRINCIPAL_3};
+  static const int32_t alone[] = {BRN_FIELD_PRINCIPAL_DIRECTIONS};
+  static double layer[9 * nodes];
+  brn_engine *engine = plain_engine(2);
+  brn_scene *scene = sphere_scene(n, 1);
+  brn_subsurface wanted = equal_layers(all, 5);
+  double *stress, *directions, *principal[3], *lonely;
+  brn_increment result;
+  brn_run *run;
+  size_t count = 0, k, m, a, b;
+  CHECK_STATUS(BRN_OK, brn_scene_set_subsurface(scene, &wanted));
+  run = start(engine, scene);
+  CHECK_STATUS(BRN_OK, brn_run_execute(run, NULL, NULL));
+  result = last_of(run);
+  stress = field_of(run, BRN_FIELD_STRESS, 6 * (size_t)cells);
+  directions = field_of(run, BRN_FIELD_PRINCIPAL_DIRECTIONS, 9 * (size_t)cells);
+  for (m = 0; m < 3; ++m) principal[m] = field_of(run, BRN_FIELD_PRINCIPAL_1 + (int32_t)m, cells);
+  for (k = 0; k < cells; ++k) {
+    const double *s = stress + 6 * k;
+    const double tensor[3][3] = {{s[0], s[5], s[4]}, {s[5], s[1], s[3]}, {s[4], s[3], s[2]}};
+    for (m = 0; m < 3; ++m) {
+      const double *d = directions + 9 * k + 3 * m;
+      for (b = 0; b < 3; ++b) {
+        double turned = 0.0, product = 0.0;
+        for (a = 0; a < 3; ++a) {
+          turned += tensor[b][a] * d[a];
+          product += d[a] * directions[9 * k + 3 * b + a];
+        }
+        CHECK(fabs(turned - principal[m][k] * d[b]) < 1e-13 * result.max_pressure); /* some hundred roundings */
+        CHECK(fabs(product - (b == m ? 1.0 : 0.0)) < 1e-13);
+      }
+    }
+  }
+  CHECK_STATUS(BRN_OK, brn_run_get_layer(run, BRN_FIELD_PRINCIPAL_DIRECTIONS, 3, layer, 9 * nodes, &count));
+  CHECK(count == 9 * nodes && memcmp(layer, directions + 3 * 9 * nodes, sizeof layer) == 0);
+  brn_run_destroy(run);
+
+  wanted = equal_layers(alone, 1);
+  CHECK_STATUS(BRN_OK, brn_scene_set_subsurface(scene, &wanted));
+  run = start(engine, scene);
+  CHECK_STATUS(BRN_OK, brn_run_execute(run, NULL, NULL));
+  CHECK(isnan(last_of(run).max_von_mises));
+  lonely = field_of(run, BRN_FIELD_PRINCIPAL_DIRECTIONS, 9 * (size_t)cells);
+  CHECK(memcmp(lonely, directions, 9 * cells * sizeof *lonely) == 0);
+  free(lonely);
+  for (m = 0; m < 3; ++m) free(principal[m]);
+  free(directions);
+  free(stress);
+  brn_run_destroy(run);
+  brn_scene_destroy(scene);
+  brn_engine_destroy(engine);
+}
+
 static void threads_do_not_change_a_bit(void) {
   static const int32_t threads[] = {1, 2, 8};
   double *expected = NULL;
@@ -381,7 +437,7 @@ static void refused(brn_scene *scene, const brn_subsurface *wanted, const char *
 }
 
 static void bad_requests_of_scenes_are_refused(void) {
-  static const int32_t surface[] = {BRN_FIELD_STRESS, BRN_FIELD_PRESSURE}, unknown[] = {27}, upper[] = {121};
+  static const int32_t surface[] = {BRN_FIELD_STRESS, BRN_FIELD_PRESSURE}, unknown[] = {28}, upper[] = {121};
   static const double negative[] = {0.0, -1e-6}, falling[] = {2e-6, 1e-6}, nan_depth[] = {NAN};
   brn_engine *engine = plain_engine(1);
   brn_scene *scene = sphere_scene(8, 1);
@@ -392,7 +448,7 @@ static void bad_requests_of_scenes_are_refused(void) {
   CHECK_STATUS(BRN_INVALID_ARGUMENT, brn_scene_set_subsurface(scene, NULL));
   refused(scene, &wanted, "fields[1] = 1");
   wanted = equal_layers(unknown, 1);
-  refused(scene, &wanted, "fields[0] = 27|26|126");
+  refused(scene, &wanted, "fields[0] = 28|27|127");
   wanted = equal_layers(NULL, 1);
   refused(scene, &wanted, "fields is NULL");
   wanted = equal_layers(NULL, 0);
@@ -601,6 +657,7 @@ int main(void) {
   a_layer_is_a_part_of_its_field();
   what_is_not_asked_for_is_not_there();
   the_upper_body_mirrors_the_lower_one();
+  directions_are_those_of_the_principal_stresses();
   threads_do_not_change_a_bit();
   a_cancelled_stress_keeps_the_contact();
   saved_runs_keep_the_largest_and_make_fields_anew();

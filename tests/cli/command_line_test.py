@@ -250,6 +250,74 @@ class CommandLine(unittest.TestCase):
         self.expect(self.run_scene(), 0)
         self.expect(self.brinell("report", self.out, env={**os.environ, "PATH": str(self.folder)}), 3, "gnuplot")
 
+    # ------------------------------------------------------------------ bodies that tilt
+
+    def tilt_scene(self, *steps, grid=""):
+        """A flat punch of 10 um radius with a rounded edge on steel."""
+        text = "".join(f"[[step]]\n{step}\n" for step in steps)
+        return self.write("scene.toml", f"""title = "Tilt"
+[grid]
+nodes = [48, 40]
+spacing = [0.7e-6, 0.8e-6]
+{grid}
+[lower]
+youngs_modulus = 210e9
+poissons_ratio = 0.3
+[upper]
+rigid = true
+[[surface]]
+shape = "flat_punch"
+radius = 10e-6
+edge_radius = 1e-3
+{text}[output]
+fields = ["pressure", "gap"]
+increments = "all"
+""")
+
+    def test_eccentricity_tilts_and_tilt_gives_it_back(self):
+        self.tilt_scene("normal_force = 0.02", "normal_force = 0.02\neccentricity = [3e-6, -1e-6]")
+        self.expect(self.run_scene(), 0)
+        parallel, eccentric = self.summary()["increments"]
+        self.assertEqual(parallel["tilt"], [0, 0])
+        # half the grid is 16.8 and 16 um, and the certificate 1e-8 of that
+        for found, wanted in zip(eccentric["centre_of_force"], (3e-6, -1e-6)):
+            self.assertAlmostEqual(found, wanted, delta=1.7e-13)
+        self.assertLess(eccentric["tilt"][0], -1e-5)
+        self.assertGreater(eccentric["tilt"][1], 1e-6)
+        self.assertLess(max(eccentric["certificate"][part] for part in ("penetration", "balance")), 1e-8)
+
+        self.tilt_scene("normal_force = 0.02\ntilt = [{!r}, {!r}]".format(*eccentric["tilt"]))
+        self.expect(self.run_scene(), 0)
+        given = self.summary()["increments"][0]
+        self.assertEqual(given["tilt"], eccentric["tilt"])
+        for found, wanted in zip(given["centre_of_force"], eccentric["centre_of_force"]):
+            self.assertAlmostEqual(found, wanted, delta=1e-12)
+        self.assertAlmostEqual(given["approach"] / eccentric["approach"], 1, delta=1e-7)
+
+    def test_bad_eccentricity_and_tilt_are_status_2(self):
+        force = "normal_force = 0.02\n"
+        cases = [
+            ("eccentricity = [1e-6, 0]\ntilt = [0, 0]", "", ["[[step]] 1", "tilt", "either eccentricity or tilt"]),
+            ("eccentricity = [17e-6, 0]", "", [":15: [[step]] 1", "eccentricity", "1.7e-05", "outside the grid"]),
+            ("eccentricity = [0, -16e-6]", "", ["eccentricity", "-1.6e-05", "outside the grid"]),
+            ("eccentricity = [1e-6, 0]", 'boundary = "periodic"', [":15: [[step]] 1", "eccentricity", "boundary = \"free\""]),
+            ("tilt = [1e-6, 0]", 'boundary = "periodic"', [":15: [[step]] 1", "tilt", "boundary = \"free\""]),
+            ("eccentricity = 1e-6", "", ["[[step]] 1", "eccentricity = ", "[x, y]"]),
+            ("eccentricity = [1e-6]", "", ["[[step]] 1", "eccentricity", "found 1 value"]),
+            ("eccentricity = [1e-6, 'left']", "", ["[[step]] 1", "eccentricity", "number"]),
+            ("eccentricity = [nan, 0]", "", ["[[step]] 1", "eccentricity", "finite"]),
+            ("tilt = [0, 0, 1e-6]", "", ["[[step]] 1", "tilt", "found 3 values"]),
+            ("tilt = [0, inf]", "", ["[[step]] 1", "tilt", "finite"]),
+            ("excentricity = [1e-6, 0]", "", ["'excentricity'", "'eccentricity'"]),
+        ]
+        for step, grid, words in cases:
+            with self.subTest(step + grid):
+                self.tilt_scene(force + step, grid=grid)
+                for result in (self.run_scene(), self.brinell("check", self.scene)):
+                    self.expect(result, 2, "brinell: ", "scene.toml", *words)
+                    self.assertEqual(result.stdout, "")
+                self.assertFalse(self.out.exists())
+
     # ------------------------------------------------------------------ below the surface
 
     def below_scene(self, output, layers="layers = 20\nlayer_thickness = 0.7e-6", step="", upper="rigid = true"):
@@ -319,15 +387,18 @@ increments = 2
 
     def test_fields_below_the_surface_are_in_the_file_with_their_depths(self):
         both = "same_as_lower = true"
-        self.below_scene('fields = ["pressure", "stress", "upper_von_mises", "hydrostatic"]', upper=both,
+        self.below_scene('fields = ["pressure", "stress", "upper_von_mises", "hydrostatic", "principal_directions"]',
+                         upper=both,
                          layers="layer_depths = [0, 2e-6, 5e-6]")
         self.expect(self.run_scene(), 0)
         tree = xml.etree.ElementTree.parse(self.out / "fields.xdmf")
         names = {a.get("Name") for a in tree.iter("Attribute")}
-        self.assertLessEqual({"pressure", "stress_xx", "stress_xy", "upper_von_mises", "hydrostatic"}, names)
+        self.assertLessEqual({"pressure", "stress_xx", "stress_xy", "upper_von_mises", "hydrostatic", "principal_directions_1",
+                              "principal_directions_3"}, names)
         sizes = {d.text.split(":")[1].rsplit("/", 1)[1]: d.get("Dimensions") for d in tree.iter("DataItem")
                  if d.get("Format") == "HDF"}
         self.assertEqual(sizes["stress"], "3 64 64 6")
+        self.assertEqual(sizes["principal_directions"], "3 64 64 9")
         self.assertEqual(sizes["upper_von_mises"], "3 64 64")
         self.assertEqual(sizes["pressure"], "1 64 64")
         self.assertIn("0 2e-06 5e-06", [d.text for d in tree.iter("DataItem")])

@@ -146,12 +146,18 @@ TEST(FieldsFile, leaves_nothing_when_the_disk_is_full) {
 }
 
 TEST(Xdmf, places_fields_and_names_its_neighbour) {
-  const std::vector<StoredIncrement> increments{
-      {0, 0, {{"pressure"}, {"von_mises", FieldKind::scalar}, {"stress", FieldKind::tensor}}}};
+  const std::vector<StoredIncrement> increments{{0,
+                                                 0,
+                                                 {{"pressure"},
+                                                  {"von_mises", FieldKind::scalar},
+                                                  {"stress", FieldKind::tensor},
+                                                  {"principal_directions", FieldKind::directions}}}};
   const std::string even = xdmf_text("fields.h5", {4, 3, 2.0, 1.0, {0.5, 1.5}}, increments);
   EXPECT_THAT(even, AllOf(HasSubstr("fields.h5:/step_0/increment_0/pressure"), HasSubstr("Dimensions=\"1 3 4\""),
                           HasSubstr("Dimensions=\"2 3 4\""), HasSubstr(">0 -1 -3<"), HasSubstr(">0.5 -1 -3<"),
-                          HasSubstr(">1 1 2<"), HasSubstr("stress_yz"), HasSubstr("0 0 0 5 1 1 1 1 2 3 4 1")));
+                          HasSubstr(">1 1 2<"), HasSubstr("stress_yz"), HasSubstr("0 0 0 5 1 1 1 1 2 3 4 1"),
+                          HasSubstr("principal_directions_3"), HasSubstr("Vector"),
+                          HasSubstr("0 0 0 6 1 1 1 1 2 3 4 3"), HasSubstr("Dimensions=\"2 3 4 9\"")));
   const std::string uneven = xdmf_text("fields.h5", {4, 3, 2.0, 1.0, {0, 1, 3}}, increments);
   EXPECT_THAT(uneven,
               AllOf(HasSubstr("VXVYVZ"), HasSubstr(">0 1 3<"), HasSubstr(">-3 -1 1 3<"), HasSubstr(">-1 0 1<")));

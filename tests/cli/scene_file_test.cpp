@@ -178,6 +178,24 @@ TEST(SceneFile, wants_exactly_one_drive) {
   EXPECT_THAT(refusal(with("eccentricity = [0.0, 1e-6]", "eccentricity = [0, 0]\ntilt = [0, 0]")), HasSubstr("both"));
 }
 
+TEST(SceneFile, reads_where_the_force_acts_or_the_slopes) {
+  const auto steps = [](const std::string& step) {
+    const ScratchFolder folder;
+    folder.write("scene.toml", with("eccentricity = [0.0, 1e-6]", step));
+    return read_scene(folder.path()).steps;
+  };
+  EXPECT_THAT(steps("eccentricity = [-2e-6, 0]")[0].eccentricity.value(), ElementsAre(-2e-6, 0));
+  EXPECT_FALSE(steps("eccentricity = [-2e-6, 0]")[0].tilt);
+  EXPECT_THAT(steps("tilt = [1e-5, -3]")[0].tilt.value(), ElementsAre(1e-5, -3));
+  EXPECT_FALSE(steps("tilt = [1e-5, -3]")[0].eccentricity);
+  EXPECT_FALSE(steps("")[0].eccentricity || steps("")[0].tilt);
+  EXPECT_THAT(refusal(with("[0.0, 1e-6]", "0.0")), AllOf(HasSubstr("eccentricity = 0"), HasSubstr("[x, y]")));
+  EXPECT_THAT(refusal(with("[0.0, 1e-6]", "[\"a\", 0]")), AllOf(HasSubstr("eccentricity"), HasSubstr("number")));
+  EXPECT_THAT(refusal(with("eccentricity = [0.0, 1e-6]", "tilt = [0]")),
+              AllOf(HasSubstr("[[step]] 1"), HasSubstr("tilt"), HasSubstr("found 1 value")));
+  EXPECT_THAT(refusal(with("eccentricity = [0.0, 1e-6]", "tilt = [nan, 0]")), HasSubstr("finite"));
+}
+
 TEST(SceneFile, wants_its_parts_to_fit) {
   EXPECT_THAT(refusal(with("radius = 105e-6", "")),
               AllOf(HasSubstr("[[surface]] 1"), HasSubstr("radius is missing")));

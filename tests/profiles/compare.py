@@ -4,7 +4,7 @@
     compare.py --self-test FOLDER   the same, then with references and summaries made wrong, each of which must be told
 
 Exit status 0 if all agrees. The program's path comes from the variable BRINELL_PROGRAM. |result - value| <= tolerance,
-in the quantity's own unit; a quantity of two values is compared by component.
+in the quantity's own unit; a quantity of two values is compared by component, with one tolerance or one for each.
 """
 
 import copy
@@ -32,7 +32,8 @@ def difference(name, result, expected):
     value, tolerance = expected["value"], expected["tolerance"]
     values = value if isinstance(value, list) else [value]
     results = result if isinstance(value, list) and isinstance(result, list) else [result]
-    if len(results) == len(values) and all(within(r, v, tolerance) for r, v in zip(results, values)):
+    limits = tolerance if isinstance(tolerance, list) else [tolerance] * len(values)
+    if len(results) == len(values) and all(map(within, results, values, limits)):
         return None
     return f"{name} is {result}, expected {value} within {tolerance} ({expected['source']})"
 
@@ -80,11 +81,17 @@ def falsified(reference, summary):
     """(what was done, reference, summary) for every kind of wrong that must be told."""
     first = reference["increments"][0]
     for name in (k for k in first if k not in ("step", "increment")):
+        result, tolerance = summary["increments"][0][name], first[name]["tolerance"]
         for sign in (-1, 1):
-            wrong = copy.deepcopy(reference)
-            result = summary["increments"][0][name]
-            wrong["increments"][0][name]["value"] = result + sign * 1.001 * (first[name]["tolerance"] or 1)
-            yield f"{name} just out of tolerance", wrong, summary
+            for k in range(len(result) if isinstance(result, list) else 1):
+                wrong = copy.deepcopy(reference)
+                if isinstance(result, list):
+                    limit = tolerance[k] if isinstance(tolerance, list) else tolerance
+                    value = result[:k] + [result[k] + sign * 1.001 * (limit or 1)] + result[k + 1:]
+                else:
+                    value = result + sign * 1.001 * (tolerance or 1)
+                wrong["increments"][0][name]["value"] = value
+                yield f"{name} just out of tolerance", wrong, summary
         for nothing in (None, float("nan"), "1"):
             wrong = copy.deepcopy(summary)
             wrong["increments"][-1][name] = nothing

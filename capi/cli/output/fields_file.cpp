@@ -19,6 +19,7 @@ std::vector<hsize_t> shape_of(const FieldsGrid& grid, FieldKind kind) {
   std::vector<hsize_t> shape{static_cast<hsize_t>(grid.ny), static_cast<hsize_t>(grid.nx)};
   if (kind != FieldKind::surface) shape.insert(shape.begin(), grid.depths.size());
   if (kind == FieldKind::tensor) shape.push_back(6);
+  if (kind == FieldKind::directions) shape.push_back(9);
   return shape;
 }
 
@@ -112,10 +113,13 @@ void FieldsFile::recover_increments() {
       for (const auto& field : members(group.get(), H5_INDEX_CRT_ORDER)) {
         const Hdf5Handle data(H5Dopen(group.get(), field.c_str(), H5P_DEFAULT), H5Dclose);
         const Hdf5Handle space(H5Dget_space(data.get()), H5Sclose);
+        std::array<hsize_t, 4> shape{};
         const int rank = H5Sget_simple_extent_ndims(space.get());
-        increment.fields.push_back({field, rank == 4   ? FieldKind::tensor
-                                           : rank == 3 ? FieldKind::scalar
-                                                       : FieldKind::surface});
+        if (rank == 4) H5Sget_simple_extent_dims(space.get(), shape.data(), nullptr);
+        increment.fields.push_back({field, shape[3] == 9 ? FieldKind::directions
+                                           : rank == 4   ? FieldKind::tensor
+                                           : rank == 3   ? FieldKind::scalar
+                                                         : FieldKind::surface});
       }
       increments_.push_back(std::move(increment));
     }

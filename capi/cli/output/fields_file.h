@@ -1,7 +1,8 @@
 // fields.h5 and the XDMF beside it: the fields of the stored increments.
 //
 // Group /step_S/increment_I per stored increment; data sets (ny, nx) on the surface, (layers, ny, nx) below it,
-// (layers, ny, nx, 6) for tensors (xx yy zz yz xz xy). Each data set has the attribute `unit`; the root has `spacing`
+// (layers, ny, nx, 6) for tensors (xx yy zz yz xz xy), (layers, ny, nx, 9) for three unit vectors (of the largest
+// principal stress first). Each data set has the attribute `unit`; the root has `spacing`
 // [dx, dy] and `depths` of the layers [m]. The XDMF names the HDF5 file relative to itself, places node (i, j) at
 // ((i − (nx−1)/2)·dx, (j − (ny−1)/2)·dy), and counts stored increments as time.
 #pragma once
@@ -25,7 +26,7 @@ struct FieldsGrid {
   std::vector<double> depths;  ///< of the layers [m], increasing; empty if nothing below the surface is stored
 };
 
-enum class FieldKind { surface, scalar, tensor };
+enum class FieldKind { surface, scalar, tensor, directions };
 
 struct StoredField {
   std::string name;

@@ -111,10 +111,10 @@ class Xdmf {
     return text;
   }
 
-  pugi::xml_node add_attribute(pugi::xml_node grid, const std::string& name) const {
+  pugi::xml_node add_attribute(pugi::xml_node grid, const std::string& name, const char* type = "Scalar") const {
     auto attribute = grid.append_child("Attribute");
     attribute.append_attribute("Name") = name.c_str();
-    attribute.append_attribute("AttributeType") = "Scalar";
+    attribute.append_attribute("AttributeType") = type;
     attribute.append_attribute("Center") = "Node";
     return attribute;
   }
@@ -127,18 +127,31 @@ class Xdmf {
   void add_field(pugi::xml_node grid, const StoredField& field, const std::string& group) const {
     const std::string place = group + "/" + field.name;
     const std::string dimensions = extents(field.kind != FieldKind::surface);
-    if (field.kind != FieldKind::tensor) {
+    if (field.kind == FieldKind::surface || field.kind == FieldKind::scalar) {
       add_reference(add_attribute(grid, field.name), dimensions, place);
-      return;
+    } else if (field.kind == FieldKind::tensor) {
+      for (std::size_t k = 0; k < kComponents.size(); ++k) {
+        const auto attribute = add_attribute(grid, field.name + "_" + kComponents[k]);
+        add_part(attribute, dimensions, k, 1, kComponents.size(), place);
+      }
+    } else {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto attribute = add_attribute(grid, field.name + "_" + std::to_string(k + 1), "Vector");
+        add_part(attribute, dimensions, 3 * k, 3, 9, place);
+      }
     }
-    for (std::size_t k = 0; k < kComponents.size(); ++k) {
-      auto slab = add_attribute(grid, field.name + "_" + kComponents[k]).append_child("DataItem");
-      slab.append_attribute("ItemType") = "HyperSlab";
-      slab.append_attribute("Dimensions") = (dimensions + " 1").c_str();
-      auto selection = add_item(slab, "3 4", "0 0 0 " + std::to_string(k) + " 1 1 1 1 " + dimensions + " 1");
-      selection.attribute("NumberType") = "Int";
-      add_reference(slab, dimensions + " 6", place);
-    }
+  }
+
+  /// `count` of the `all` numbers of each node, from the `first` on.
+  void add_part(pugi::xml_node attribute, const std::string& dimensions, std::size_t first, std::size_t count,
+                std::size_t all, const std::string& place) const {
+    const std::string part = dimensions + " " + std::to_string(count);
+    auto slab = attribute.append_child("DataItem");
+    slab.append_attribute("ItemType") = "HyperSlab";
+    slab.append_attribute("Dimensions") = part.c_str();
+    auto selection = add_item(slab, "3 4", "0 0 0 " + std::to_string(first) + " 1 1 1 1 " + part);
+    selection.attribute("NumberType") = "Int";
+    add_reference(slab, dimensions + " " + std::to_string(all), place);
   }
 
   std::string hdf5_name_;

@@ -10,11 +10,21 @@
 namespace brinell::simd {
 namespace {
 
+// 0, 1, 2, ...: loading it costs less than converting the index, which makes the compiler pack two registers as well.
+struct Indices {
+  alignas(64) double value[kLongestStretch];
+};
+constexpr Indices kIndices = [] {
+  Indices indices{};
+  for (std::size_t i = 0; i < kLongestStretch; ++i) indices.value[i] = static_cast<double>(i);
+  return indices;
+}();
+
 template <class Arch, class Real, bool kTilts>
 struct ContactPasses {
   static double at(Line line, std::size_t i) {
     if constexpr (kTilts) {
-      return line.value + line.slope * static_cast<double>(static_cast<std::int32_t>(i));
+      return line.value + line.slope * kIndices.value[i];
     } else {
       return line.value;
     }
@@ -51,10 +61,10 @@ struct ContactPasses {
     for (std::size_t i = 0; i < n; ++i) {
       const double r = g[i] - at(approach, i);
       const double before = p[i];
-      const double enters = (before == 0 ? 1.0 : 0.0) * (r < -noise ? 1.0 : 0.0);
-      const double pressure = enters != 0 ? seed : before;
+      const bool enters = static_cast<int>(before == 0) & static_cast<int>(r < -noise);
+      const double pressure = enters ? seed : before;
       p[i] = pressure;
-      entered += enters;
+      entered += enters ? 1.0 : 0.0;
       active += pressure > 0 ? 1.0 : 0.0;
       complementarity += std::fabs(pressure * r);
       const double depth = -r;
