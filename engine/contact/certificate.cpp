@@ -12,6 +12,11 @@ struct PressureSums {
   double complementarity = 0;
 };
 
+/// What is no number proves nothing, and would be passed over by comparisons: it counts as infinite.
+double proof(double part) {
+  return std::isnan(part) ? HUGE_VAL : part;
+}
+
 }  // namespace
 
 double Certificate::worst() const {
@@ -19,16 +24,20 @@ double Certificate::worst() const {
 }
 
 Certificate certificate_of(const Evidence& evidence, Drive drive, double target) {
+  for (const double part : {evidence.approach, evidence.total, evidence.displacement, evidence.min_gap,
+                            evidence.complementarity, evidence.tension_displacement, target}) {
+    if (!std::isfinite(part)) return {HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL};
+  }
   Certificate certificate;
   const double depth = std::max(0.0, evidence.approach - evidence.min_gap);
   if (evidence.displacement > 0) {
     certificate.penetration = depth / evidence.displacement;
-    certificate.complementarity = evidence.complementarity / (evidence.total * evidence.displacement);
+    certificate.complementarity = proof(evidence.complementarity / (evidence.total * evidence.displacement));
     certificate.tension = evidence.tension_displacement / evidence.displacement;
   } else {
     certificate.penetration = depth > 0 ? 1 : 0;
   }
-  if (drive == Drive::force) certificate.balance = std::fabs(evidence.total - target) / target;
+  if (drive == Drive::force) certificate.balance = proof(std::fabs(evidence.total - target) / target);
   return certificate;
 }
 
