@@ -94,15 +94,15 @@ class Solve {
     }
   }
 
-  /// Contact beyond the grid is left out. A rough surface is cut off here and there on purpose; but where most of the
-  /// edge is in contact the grid is too small, or a modulus or force is not in Pa or N. Said once.
+  /// Contact beyond the grid is left out. A rough surface is cut off here and there on purpose; but where nearly all
+  /// of the edge is in contact the grid is too small, or a modulus or force is not in Pa or N. Said once.
   void warn_if_cut_off() {
     const std::int64_t nx = parts_.grid.nx;
     const std::int64_t ny = parts_.grid.ny;
     if (warned_ || parts_.file.grid.periodic || nx < 3 || ny < 3) return;
     const std::int64_t edge = 2 * (nx + ny) - 4;
     const brn_increment increment = increment_of(parts_.run, solved() - 1);
-    if (2 * increment.contact_nodes < edge) return;
+    if (10 * increment.contact_nodes < 9 * edge) return;
     std::vector<double> pressure(static_cast<std::size_t>(nx * ny));
     std::size_t count = 0;
     check(brn_run_get_field(parts_.run, BRN_FIELD_PRESSURE, pressure.data(), pressure.size(), &count), parts_.run);
@@ -113,7 +113,7 @@ class Solve {
         if (pressure[static_cast<std::size_t>(j * nx + i)] > 0) ++touching;
       }
     }
-    if (2 * touching < edge) return;
+    if (10 * touching < 9 * edge) return;
     warned_ = true;
     progress_.clear();
     std::cerr << "brinell: warning: step " << increment.step << ", increment " << increment.increment << ": "
