@@ -28,8 +28,8 @@
  *     this interface.
  *   - Option structs begin with struct_size. Initialise them with their brn_..._init function, which is compiled into
  *     the caller and so fills in the caller's size, and the defaults. Members are only ever appended; the engine
- * reads those that struct_size covers and uses the defaults for the others, and writes only those of a result that
- *     struct_size covers.
+ *     reads those that struct_size covers and uses the defaults for the others, and writes only those of a result
+ *     that struct_size covers.
  *   - The caller owns all arrays; they are borrowed for the duration of the call.
  *   - An engine may be used from several threads at once. A scene or run is used by one thread at a time; a second
  *     one gets BRN_WRONG_STATE. Distinct runs work concurrently on one engine.
@@ -641,8 +641,7 @@ typedef struct brn_stress_fields {
   double *tresca;       /* the largest principal stress less the smallest */
   double *hydrostatic;  /* mean of the normal stresses */
   double *principal[3]; /* falling */
-  double
-      *direction[9]; /* [3*k + axis] of principal stress k: unit vectors, their signs without meaning; all or none */
+  double *direction[9]; /* [3*k + axis] of principal stress k: unit vectors of either sign; all nine or none */
 } brn_stress_fields;
 
 static inline void brn_stress_fields_init(brn_stress_fields *value) {
