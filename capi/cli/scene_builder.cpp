@@ -95,6 +95,8 @@ class Builder {
     fail(line, part + ": " + message);
   }
 
+  static std::string label_of(std::size_t surface) { return "[[surface]] " + std::to_string(surface + 1); }
+
   void refuse_unsupported() const {
     const std::string release = std::string(" is not supported by brinell ") + brn_version();
     if (file_.lower.hardening) fail(file_.lower.hardening->line, "[lower.hardening]" + release);
@@ -112,7 +114,12 @@ class Builder {
     maps_.resize(file_.surfaces.size());
     for (std::size_t k = 0; k < maps_.size(); ++k) {
       const SurfacePart& part = file_.surfaces[k];
-      if (part.shape == "file") maps_[k] = read_surface(part.path, {part.units, part.dataset, part.fill_missing});
+      if (part.shape != "file") continue;
+      try {
+        maps_[k] = read_surface(part.path, {part.units, part.dataset, part.fill_missing});
+      } catch (const SceneError& error) {
+        fail(part.line, label_of(k) + ": " + error.what());
+      }
     }
   }
 
@@ -156,7 +163,7 @@ class Builder {
   }
 
   void add_surface(const SurfacePart& part, std::size_t index, const brn_grid& grid) {
-    const std::string label = "[[surface]] " + std::to_string(index + 1);
+    const std::string label = label_of(index);
     if (part.shape == "file") {
       require_fit(part, *maps_[index], grid, label);
       brn_heights heights;

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cmath>
 #include <iostream>
+#include <vector>
 
 #include "interrupt.h"
 #include "output/fields_file.h"
@@ -61,6 +62,7 @@ class Solve {
       const brn_status status = brn_run_advance(parts_.run, follow_progress, &progress_);
       if (status != BRN_OK && status != BRN_NOT_CONVERGED) return status;
       store_if_wanted();
+      warn_if_cut_off();
       if (status != BRN_OK) return status;
       if (Clock::now() - saved_at_ > kCheckpointInterval && solved() < total()) save_checkpoint();
     }
@@ -91,6 +93,33 @@ class Solve {
                                                        : FieldKind::surface;
       fields_->add({name, kind}, info.unit, values);
     }
+  }
+
+  /// Contact beyond the grid is left out. A rough surface is cut off here and there on purpose; but where nearly all
+  /// of the edge is in contact the grid is too small, or a modulus or force is not in Pa or N. Said once.
+  void warn_if_cut_off() {
+    const std::int64_t nx = parts_.grid.nx;
+    const std::int64_t ny = parts_.grid.ny;
+    if (warned_ || parts_.file.grid.periodic || nx < 3 || ny < 3) return;
+    const std::int64_t edge = 2 * (nx + ny) - 4;
+    const brn_increment increment = increment_of(parts_.run, solved() - 1);
+    if (10 * increment.contact_nodes < 9 * edge) return;
+    std::vector<double> pressure(static_cast<std::size_t>(nx * ny));
+    std::size_t count = 0;
+    check(brn_run_get_field(parts_.run, BRN_FIELD_PRESSURE, pressure.data(), pressure.size(), &count), parts_.run);
+    std::int64_t touching = 0;
+    for (std::int64_t j = 0; j < ny; ++j) {
+      const bool is_end = j == 0 || j == ny - 1;
+      for (std::int64_t i = 0; i < nx; i += is_end ? 1 : nx - 1) {
+        if (pressure[static_cast<std::size_t>(j * nx + i)] > 0) ++touching;
+      }
+    }
+    if (10 * touching < 9 * edge) return;
+    warned_ = true;
+    progress_.clear();
+    std::cerr << "brinell: warning: step " << increment.step << ", increment " << increment.increment << ": "
+              << touching << " of " << edge << " nodes on the edge of the grid are in contact, and contact beyond it "
+              << "is left out; enlarge the grid, or check the units: moduli in Pa, forces in N, lengths in m\n";
   }
 
   void save_checkpoint() {
@@ -147,6 +176,7 @@ class Solve {
   ProgressLine progress_;
   std::optional<FieldsFile> fields_;
   std::string summary_;
+  bool warned_ = false;
   Clock::time_point started_ = Clock::now();
   Clock::time_point saved_at_ = started_;
 };

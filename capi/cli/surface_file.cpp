@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "errors.h"
 #include "fill_missing.h"
 #include "formats/formats.h"
 
@@ -11,14 +12,19 @@ namespace brinell::cli {
 
 namespace {
 
+/// The scene says something about the file that does not fit it.
+[[noreturn]] void fail_scene(const std::filesystem::path& path, const std::string& text) {
+  throw SceneError(path.string() + ": " + text);
+}
+
 /// "map.h5:/group/heights" into the file and the data set.
 std::pair<std::filesystem::path, std::string> split_dataset(const std::filesystem::path& path, std::string dataset) {
   const std::string text = path.string();
   const auto colon = text.find(":/");
   if (colon == std::string::npos || std::filesystem::exists(path)) return {path, std::move(dataset)};
   if (!dataset.empty() && dataset != text.substr(colon + 1)) {
-    fail_file(text.substr(0, colon), "the path names the data set '" + text.substr(colon + 1) +
-                                         "', the key dataset another one, '" + dataset + "'");
+    fail_scene(text.substr(0, colon), "the path names the data set '" + text.substr(colon + 1) +
+                                          "', the key dataset another one, '" + dataset + "'");
   }
   return {text.substr(0, colon), text.substr(colon + 1)};
 }
@@ -45,7 +51,7 @@ RawMap read_raw(const std::filesystem::path& path, const std::string& dataset) {
   if (bytes.empty()) fail_file(path, "is empty");
   const Format format = format_of(path, bytes);
   if (!dataset.empty() && format != Format::hdf5) {
-    fail_file(path, "is not an HDF5 file, so that dataset = '" + dataset + "' has no meaning");
+    fail_scene(path, "is not an HDF5 file, so that dataset = '" + dataset + "' has no meaning");
   }
   switch (format) {
     case Format::gsf: return read_gsf(path, bytes);
@@ -61,13 +67,13 @@ RawMap read_raw(const std::filesystem::path& path, const std::string& dataset) {
 double scale_of(const std::filesystem::path& path, const std::string& stated, const std::string& wanted) {
   constexpr const char* kLengths = "a unit of length: m, mm, um, nm or pm";
   const double scene_scale = metres_per(wanted.empty() ? "m" : wanted);
-  if (std::isnan(scene_scale)) fail_file(path, "units = '" + wanted + "', expected " + kLengths);
+  if (std::isnan(scene_scale)) fail_scene(path, "units = '" + wanted + "', expected " + kLengths);
   if (stated.empty()) return scene_scale;
   const double file_scale = metres_per(stated);
   if (std::isnan(file_scale)) fail_file(path, "its values are in '" + stated + "', expected " + kLengths);
   if (!wanted.empty() && file_scale != scene_scale) {
-    fail_file(path,
-              "units = '" + wanted + "', but the file says that its values are in '" + stated + "'; leave units out");
+    fail_scene(
+        path, "units = '" + wanted + "', but the file says that its values are in '" + stated + "'; leave units out");
   }
   return file_scale;
 }

@@ -28,7 +28,7 @@ struct SurfaceOptions {
 
 /// The format follows from the extension (.gsf, .npy, .x3p, .h5, .hdf5), else from the first bytes, else it is text:
 /// Gwyddion's export if it carries that header, a plain matrix if not. "map.h5:/group/heights" names a data set.
-/// Throws FileError.
+/// Throws FileError, or SceneError if the options do not fit the file.
 HeightMap read_surface(const std::filesystem::path& path, const SurfaceOptions& options = {});
 
 }  // namespace brinell::cli

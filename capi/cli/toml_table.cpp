@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "errors.h"
+#include "formats/formats.h"
 #include "words.h"
 
 namespace brinell::cli {
@@ -23,12 +24,23 @@ std::string type_name(const toml::node& node) {
   }
 }
 
-/// As it would stand in the file, cut to a readable length.
-std::string shown(const toml::node& node) {
-  if (node.is_string()) return "\"" + **node.as_string() + "\"";
+/// As it would stand in the file.
+std::string whole(const toml::node& node) {
+  if (const auto* text = node.as_string()) return "\"" + **text + "\"";
+  if (const auto* number = node.as_floating_point()) return number_text(**number);
+  if (const auto* array = node.as_array()) {
+    std::vector<std::string> parts;
+    for (const auto& part : *array) parts.push_back(whole(part));
+    return "[" + joined(parts) + "]";
+  }
   std::ostringstream stream;
   node.visit([&](const auto& value) { stream << value; });
-  std::string text = std::move(stream).str();
+  return std::move(stream).str();
+}
+
+/// The same, cut to a readable length.
+std::string shown(const toml::node& node) {
+  std::string text = whole(node);
   constexpr std::size_t kMost = 60;
   if (text.size() > kMost) text = text.substr(0, kMost) + "...";
   return text;

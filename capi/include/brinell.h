@@ -670,8 +670,7 @@ typedef struct brn_stress_fields {
   double *tresca;       /* the largest principal stress less the smallest */
   double *hydrostatic;  /* mean of the normal stresses */
   double *principal[3]; /* falling */
-  double
-      *direction[9]; /* [3*k + axis] of principal stress k: unit vectors, their signs without meaning; all or none */
+  double *direction[9]; /* [3*k + axis] of principal stress k: unit vectors of either sign; all nine or none */
 } brn_stress_fields;
 
 static inline void brn_stress_fields_init(brn_stress_fields *value) {

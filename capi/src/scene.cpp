@@ -1,6 +1,7 @@
 #include <brinell.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "handles.h"
@@ -44,6 +45,13 @@ struct CheckedHeights {
   surface::Detrend detrend;
 };
 
+void check_stride(const char* name, std::int64_t stride, std::int64_t nodes) {
+  constexpr double most = 0x1p58;  // two such offsets together, in bytes, stay within 64 bits
+  if (std::fabs(static_cast<double>(stride)) * static_cast<double>(nodes) <= most) return;
+  fail(Status::invalid_argument, std::string(name) + " = " + std::to_string(stride) + " for " +
+                                     std::to_string(nodes) + " nodes: must stay within the memory's addresses");
+}
+
 CheckedHeights to_heights(const brn_heights* heights) {
   const auto h = read(heights, "heights", brn_heights_init, &brn_heights::values, &brn_heights::nx, &brn_heights::ny,
                       &brn_heights::stride_x, &brn_heights::stride_y, &brn_heights::detrend);
@@ -51,6 +59,8 @@ CheckedHeights to_heights(const brn_heights* heights) {
   surface::HeightMap map = surface::HeightMap::contiguous(h.values, h.nx, h.ny);
   if (h.stride_x != 0) map.stride_x = h.stride_x;
   if (h.stride_y != 0) map.stride_y = h.stride_y;
+  check_stride("stride_x", map.stride_x, h.nx);
+  check_stride("stride_y", map.stride_y, h.ny);
   return {map, checked_enum<surface::Detrend>(h.detrend, BRN_DETREND_PLANE, "detrend")};
 }
 

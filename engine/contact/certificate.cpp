@@ -18,6 +18,11 @@ double half_side(std::int64_t nodes, double spacing) {
 
 constexpr std::int64_t kRowsPerTask = 16;
 
+/// What is no number proves nothing, and would be passed over by comparisons: it counts as infinite.
+double proof(double part) {
+  return std::isnan(part) ? HUGE_VAL : part;
+}
+
 }  // namespace
 
 double Certificate::worst() const {
@@ -25,16 +30,20 @@ double Certificate::worst() const {
 }
 
 Certificate certificate_of(const Evidence& evidence, const Load& load, const Grid& grid) {
+  for (const double part : {evidence.pressure.one, evidence.pressure.x, evidence.pressure.y, evidence.displacement,
+                            evidence.depth, evidence.complementarity, evidence.tension_displacement, load.target}) {
+    if (!std::isfinite(part)) return {HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL};
+  }
   Certificate certificate;
   if (evidence.displacement > 0) {
     certificate.penetration = evidence.depth / evidence.displacement;
-    certificate.complementarity = evidence.complementarity / (evidence.pressure.one * evidence.displacement);
+    certificate.complementarity = proof(evidence.complementarity / (evidence.pressure.one * evidence.displacement));
     certificate.tension = evidence.tension_displacement / evidence.displacement;
   } else {
     certificate.penetration = evidence.depth > 0 ? 1 : 0;
   }
   if (load.drive == Drive::force) {
-    certificate.balance = std::fabs(evidence.pressure.one - load.target) / load.target;
+    certificate.balance = proof(std::fabs(evidence.pressure.one - load.target) / load.target);
   }
   if (load.moments) {
     const double moment_x = evidence.pressure.x - load.target * load.force_x;

@@ -4,6 +4,8 @@
 //
 //   field [block][row j][column: re, im]  -->  scratch [column][re sequence, im sequence][j: complex]   (free)
 //                                              scratch [column][j: complex]                             (periodic)
+//
+// The free carrier moves the last block's columns beyond the field along, so that all blocks are of one width.
 #include "fft/fftw_carrier.h"
 
 #include <algorithm>
@@ -43,20 +45,29 @@ struct Blocks {
   /// Row j to and from the blocks.
   void scatter_row(const Real* row, std::int64_t j, Real* field) const {
     for (std::int64_t block = 0; block < count; ++block) {
-      std::copy_n(row + block * kWidth, kWidth, field + block * stride + j * kWidth);
+      Real* part = field + block * stride + j * kWidth;
+      __builtin_prefetch(part + 4 * kWidth, 1, 2);  // as in gather_row
+      std::memcpy(part, row + block * kWidth, kWidth * sizeof(Real));
     }
   }
   void gather_row(const Real* field, std::int64_t j, Real* row) const {
     for (std::int64_t block = 0; block < count; ++block) {
       const Real* part = field + block * stride + j * kWidth;
       __builtin_prefetch(part + 4 * kWidth, 0, 2);  // far from each other: out of reach of the hardware's fetching
-      std::copy_n(part, kWidth, row + block * kWidth);
+      std::memcpy(row + block * kWidth, part, kWidth * sizeof(Real));
     }
   }
 
   static constexpr std::int64_t kWidth = 2 * kColumns<Real>;
   std::int64_t columns, count, stride;
 };
+
+/// Asks for memory that is read a little later.
+template <class Real>
+void prefetch(const Real* begin, std::int64_t count) {
+  constexpr std::int64_t line = static_cast<std::int64_t>(kAlignment / sizeof(Real));
+  for (std::int64_t k = 0; k < count; k += line) __builtin_prefetch(begin + k, 0, 2);
+}
 
 /// exp(−2πi j / 4n), j < n: interleaved.
 template <class Real>
@@ -142,11 +153,15 @@ class FreeByFftw final : public Carrier<Real> {
     const std::int64_t columns = blocks_.last(block) - first;
     Real* place = field + block * blocks_.stride;
     Real* sequences = scratch + sequence_;
+    const std::int64_t share = blocks_.stride / (2 * columns);
     gather(place, columns, sequences);
     for (std::int64_t c = 0; c < columns; ++c) {
       const Real* values = spectrum.values.data() + (first + c) * length_y_;
       for (int part = 0; part < 2; ++part) {
         Real* sequence = sequences + (2 * c + part) * sequence_;
+        // A share of the next block and of the next column of the spectrum with each transform.
+        prefetch(place + blocks_.stride + (2 * c + part) * share, share);
+        prefetch(values + length_y_ + part * length_y_ / 2, length_y_ / 2);
         forward_y_(sequence, scratch);
         multiply(values, spectrum.parity_y, scratch);
         backward_y_(scratch, sequence);
@@ -154,9 +169,9 @@ class FreeByFftw final : public Carrier<Real> {
     }
     // A kernel odd in x carries a factor −i, by which (re, im) becomes (im, −re).
     if (spectrum.parity_x == Parity::even) {
-      scatter(sequences, 0, 1, columns, place);
+      scatter(sequences, 0, 1, place);
     } else {
-      scatter(sequences, 1, -1, columns, place);
+      scatter(sequences, 1, -1, place);
     }
   }
 
@@ -184,7 +199,7 @@ class FreeByFftw final : public Carrier<Real> {
       }
       backward_y_(scratch, sequences + s * sequence_);
     }
-    scatter(sequences, 0, 1, columns, field + block * blocks_.stride);
+    scatter(sequences, 0, 1, field + block * blocks_.stride);
   }
 
  private:
@@ -198,15 +213,15 @@ class FreeByFftw final : public Carrier<Real> {
     }
   }
 
-  void gather(const Real* block, std::int64_t columns, Real* sequences) const {
+  void gather(const Real* __restrict block, std::int64_t columns, Real* __restrict sequences) const {
     for (std::int64_t j = 0; j < ny_; ++j) {
       const Real* row = block + j * Blocks<Real>::kWidth;
       const Real cosine = turn_y_[2 * j];
       const Real sine = turn_y_[2 * j + 1];
       Real* place = sequences + 2 * j;
-      for (std::int64_t c = 0; c < 2 * columns; ++c, place += sequence_) {
-        place[0] = row[c] * cosine;
-        place[1] = row[c] * sine;
+      for (std::int64_t c = 0; c < Blocks<Real>::kWidth; ++c) {
+        place[c * sequence_] = row[c] * cosine;
+        place[c * sequence_ + 1] = row[c] * sine;
       }
     }
     for (std::int64_t c = 0; c < 2 * columns; ++c) {
@@ -231,17 +246,19 @@ class FreeByFftw final : public Carrier<Real> {
   }
 
   /// Real part of each column from the sequence 2·column + swap, imaginary part from the other one, times sign.
-  void scatter(const Real* sequences, int swap, Real sign, std::int64_t columns, Real* block) const {
+  void scatter(const Real* __restrict sequences, int swap, Real sign, Real* __restrict block) const {
+    const Real* const real = sequences + swap * sequence_;
+    const Real* const imaginary = sequences + (1 - swap) * sequence_;
     for (std::int64_t j = 0; j < ny_; ++j) {
       Real* row = block + j * Blocks<Real>::kWidth;
       const Real cosine = turn_y_[2 * j];
       const Real sine = turn_y_[2 * j + 1];
-      const Real* place = sequences + 2 * j;
-      for (std::int64_t c = 0; c < columns; ++c, place += 2 * sequence_) {
-        const Real* real = place + swap * sequence_;
-        const Real* imaginary = place + (1 - swap) * sequence_;
-        row[2 * c] = real[0] * cosine + real[1] * sine;
-        row[2 * c + 1] = sign * (imaginary[0] * cosine + imaginary[1] * sine);
+      const Real signed_cosine = sign * cosine;
+      const Real signed_sine = sign * sine;
+      for (std::int64_t c = 0; c < kColumns<Real>; ++c) {
+        const std::int64_t at = 2 * (c * sequence_ + j);
+        row[2 * c] = real[at] * cosine + real[at + 1] * sine;
+        row[2 * c + 1] = imaginary[at] * signed_cosine + imaginary[at + 1] * signed_sine;
       }
     }
   }

@@ -29,15 +29,13 @@ void Arena::for_chunks(std::int64_t n, std::int64_t chunk,
     return;
   }
   const std::int64_t chunks = (n + chunk - 1) / chunk;
-  ForkJoin order;
+  ForkJoin loop;
   tasks_->arena.execute([&] {
     tbb::parallel_for(std::int64_t{0}, chunks, [&](std::int64_t c) {
-      order.begin_body();
+      const ForkJoin::Body running(loop);
       body(c * chunk, std::min((c + 1) * chunk, n), tbb::this_task_arena::current_thread_index());
-      order.end_body();
     });
   });
-  order.joined();
 }
 
 }  // namespace brinell::parallel

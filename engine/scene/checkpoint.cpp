@@ -28,6 +28,7 @@ class Writer {
     put_bytes(&value, sizeof value);
   }
   void put_bytes(const void* data, std::size_t size) {
+    if (size == 0) return;  // nothing may be at no address
     const std::size_t before = bytes.size();
     bytes.resize(before + size);
     std::memcpy(bytes.data() + before, data, size);
@@ -45,6 +46,7 @@ class Reader {
   }
   void get_bytes(void* data, std::size_t size) {
     if (size > left_.size()) damaged("it is truncated");
+    if (size == 0) return;
     std::memcpy(data, left_.data(), size);
     left_ = left_.subspan(size);
   }

@@ -23,6 +23,19 @@ struct PressureSums {
   std::int64_t largest_at = -1;
 };
 
+/// Sizes that are fine each for itself may overflow together, as x²/(2·radius) does for a tiny radius.
+void check_finite(const Buffer<double>& gap, const Grid& grid) {
+  for (std::size_t n = 0; n < gap.size(); ++n) {
+    if (std::isfinite(gap[n])) continue;
+    const auto i = static_cast<std::int64_t>(n) % grid.nx;
+    const auto j = static_cast<std::int64_t>(n) / grid.nx;
+    fail(Status::invalid_scene, "the gap of the undeformed surfaces at node (" + std::to_string(i) + ", " +
+                                    std::to_string(j) + ") is " + text(gap[n]) +
+                                    " m: must be finite; compare the sizes of the surfaces with the grid's, " +
+                                    text(grid.dx) + " x " + text(grid.dy) + " m a cell");
+  }
+}
+
 }  // namespace
 
 const char* name(Stage stage) {
@@ -64,6 +77,7 @@ void Run::prepare() {
                           grid, gap, engine_.arena());
     }
   }
+  check_finite(gap, grid);
   gap_ = std::move(gap);
   stage_seconds_[static_cast<int>(Stage::surface)] += seconds_since(start);
   start = Clock::now();

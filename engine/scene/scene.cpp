@@ -97,6 +97,9 @@ void Scene::set_grid(const Grid& grid, Boundary boundary) {
               ": the bytes of one field overflow 64 bits");
   require_positive("spacing dx", grid.dx, "m");
   require_positive("spacing dy", grid.dy, "m");
+  require(std::isnormal(grid.cell_area()), Status::invalid_argument,
+          "spacing = " + text(grid.dx) + " x " + text(grid.dy) + " m: the area of a cell, " + text(grid.cell_area()) +
+              " m^2, is beyond what numbers can hold");
   require(boundary == Boundary::free || boundary == Boundary::periodic, Status::invalid_argument,
           "boundary = " + std::to_string(static_cast<std::int32_t>(boundary)) +
               ": allowed are 0 (free) and 1 (periodic)");

@@ -37,7 +37,7 @@ class SpectrumIndex {
 
  private:
   static std::size_t at(int traction, int component) {
-    return static_cast<std::size_t>(traction * kComponents + component);
+    return static_cast<std::size_t>(traction) * kComponents + static_cast<std::size_t>(component);
   }
   std::array<int, kTractions * kComponents> number_{}, generated_{};
   int count_ = 0;

@@ -243,6 +243,12 @@ static void strides_are_followed(void) {
   CHECK_STATUS(BRN_OK, brn_height_statistics(&strided, 1.0, 2.0, &two));
   CHECK(memcmp(&one, &two, sizeof one) == 0);
   CHECK(one.sq > 0.0 && one.sz == one.sp + one.sv);
+  strided.stride_x = INT64_MAX;
+  CHECK_STATUS(BRN_INVALID_ARGUMENT, brn_height_statistics(&strided, 1.0, 2.0, &two));
+  CHECK(strstr(brn_last_message(), "stride_x = 9223372036854775807") != NULL);
+  strided.stride_x = 0;
+  strided.stride_y = INT64_MIN;
+  CHECK_STATUS(BRN_INVALID_ARGUMENT, brn_height_statistics(&strided, 1.0, 2.0, &two));
 }
 
 static void steps(void) {

@@ -178,6 +178,17 @@ class CommandLine(unittest.TestCase):
         self.expect(self.brinell("run", folder, "--quiet"), 0)
         self.assertTrue((self.folder / "out" / "sphere_case" / "summary.json").exists())
 
+    def test_a_contact_that_fills_the_edge_of_the_grid_is_told_once(self):
+        self.write("scene.toml", SCENE.replace("210e9", "210"))  # GPa instead of Pa
+        result = self.run_scene()
+        self.expect(result, 0, "brinell: warning: step 0, increment 0", "108 of 108 nodes on the edge", "Pa")
+        self.assertEqual(result.stderr.count("\n"), 1)
+        self.write("scene.toml", SCENE.replace("210e9", "210").replace("[lower]", 'boundary = "periodic"\n[lower]')
+                   .replace("approach = 1e-8", "normal_force = 0"))
+        result = self.run_scene()
+        self.expect(result, 0)
+        self.assertEqual(result.stderr, "")
+
     def test_quiet_prints_nothing(self):
         result = self.run_scene("--quiet")
         self.expect(result, 0)
@@ -358,7 +369,8 @@ increments = 2
         self.assertIsNone(pressed["upper_max_von_mises"])
         self.assertGreater(sliding["max_von_mises"], 1.2 * pressed["max_von_mises"])
         self.assertLess(sliding["max_von_mises_at"][2], 0.1 * radius)
-        self.assertEqual(sliding["max_pressure"], pressed["max_pressure"])
+        # The same pressure, scaled to the same force once more: rounding.
+        self.assertAlmostEqual(sliding["max_pressure"] / pressed["max_pressure"], 1, delta=1e-14)
 
     def test_no_layers_no_stress(self):
         self.below_scene('fields = ["pressure"]')  # layers alone ask for nothing
@@ -481,6 +493,14 @@ increments = 2
         self.expect(self.run_scene(), 2, "2e-06 x 1.5e-06", "1e-06 x 1.5e-06")
         self.assertFalse(self.out.exists())
 
+    def test_a_scene_that_contradicts_its_file_is_status_2(self):
+        self.write("map.gsf", gsf(4, 3, [0] * 12))
+        for extra, words in (('units = "nm"', ["'nm'", "'m'", "leave units out"]),
+                             ('dataset = "/heights"', ["not an HDF5 file", "/heights"])):
+            self.surface_scene("map.gsf", extra)
+            self.expect(self.run_scene(), 2, "scene.toml:10: [[surface]] 1", "map.gsf", *words)
+            self.assertFalse(self.out.exists())
+
     def test_bad_maps_are_status_3(self):
         whole = gsf(4, 3, [0] * 12)
         cases = [
@@ -519,10 +539,12 @@ increments = 2
             ("normal_force = 0.05\n", "", [":13: [[step]] 1", "found none"]),
             ("normal_force = 0.05", "normal_force = 0.05\napproach = 0", ["[[step]] 1", "found 2"]),
             ("[1e-6, 1.5e-6]", "[0, 1.5e-6]", ["spacing", "above 0"]),
-            ("[1e-6, 1.5e-6]", "[1e-6, -1]", ["spacing", "above 0"]),
+            ("[1e-6, 1.5e-6]", "[1e-6, -1]", ["spacing = [1e-06, -1]", "above 0"]),
+            ("[1e-6, 1.5e-6]", "[1e-6, nan]", ["spacing = [1e-06, nan]", "finite"]),
+            ("[1e-6, 1.5e-6]", "[1e-300, 1e-300]", ["spacing", "1e-300", "area of a cell"]),
             ("[32, 24]", "[32, 0]", ["nodes", "from 1"]),
             ("poissons_ratio = 0.3", "poissons_ratio = 0.5", ["poissons_ratio = 0.5", "below 0.5"]),
-            ("poissons_ratio = 0.3", "poissons_ratio = -1.0", ["poissons_ratio = -1.0", "above -1"]),
+            ("poissons_ratio = 0.3", "poissons_ratio = -1.0", ["poissons_ratio = -1,", "above -1"]),
             ("210e9", "-210e9", ["youngs_modulus", "above 0"]),
             ("youngs_modulus = 210e9\npoissons_ratio = 0.3", "rigid = true", ["both bodies are rigid"]),
             ("normal_force = 0.05", "normal_force = -0.05", ["normal_force = -0.05", "at least 0"]),
@@ -585,7 +607,9 @@ increments = 2
 
     def test_a_full_disk_is_status_3_and_leaves_no_part(self):
         self.write("scene.toml", SCENE.replace("[32, 24]", "[64, 64]"))
-        for limit in (0, 100, 1000, 5000, 50000):
+        # ThreadSanitizer itself writes a file before main, which no limit of zero lets it.
+        nothing = 1 if os.environ.get("BRINELL_SANITIZE") == "thread" else 0
+        for limit in (nothing, 100, 1000, 5000, 50000):
             with self.subTest(limit):
                 shutil.rmtree(self.out, ignore_errors=True)
                 result = self.run_scene(preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))

@@ -88,7 +88,7 @@ TEST(FieldsFile, holds_what_was_added_with_unit_and_spacing) {
   EXPECT_EQ(map.dx, 1e-6);
   EXPECT_EQ(map.dy, 2e-6);
   EXPECT_EQ(map.heights, values);
-  EXPECT_THAT(message_of<FileError>([&] {
+  EXPECT_THAT(message_of<SceneError>([&] {
                 read_surface(folder.path() / "fields.h5:/step_0/increment_3/gap", {"nm", "", false});
               }),
               HasSubstr("'m'"));

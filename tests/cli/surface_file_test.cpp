@@ -34,6 +34,11 @@ std::string refusal(const std::filesystem::path& path, const SurfaceOptions& opt
   return message_of<FileError>([&] { read_surface(path, options); });
 }
 
+/// Where not the file is at fault but what the scene says about it.
+std::string contradiction(const std::filesystem::path& path, const SurfaceOptions& options) {
+  return message_of<SceneError>([&] { read_surface(path, options); });
+}
+
 TEST(GwyddionText, states_its_size_and_unit_in_utf8_and_latin1) {
   const ScratchFolder folder;
   for (const std::string micro : {"\xC2\xB5", "\xB5", "u"}) {
@@ -53,7 +58,8 @@ TEST(GwyddionText, accepts_its_own_unit_repeated_and_refuses_another) {
   const ScratchFolder folder;
   const auto path = folder.write("map.txt", "# Value units: nm\n1 2\n3 4\n");
   EXPECT_DOUBLE_EQ(read_surface(path, {"nm", "", false}).heights[3], 4e-9);
-  EXPECT_THAT(refusal(path, {"um", "", false}), AllOf(HasSubstr("map.txt"), HasSubstr("'um'"), HasSubstr("'nm'")));
+  EXPECT_THAT(contradiction(path, {"um", "", false}),
+              AllOf(HasSubstr("map.txt"), HasSubstr("'um'"), HasSubstr("'nm'")));
   EXPECT_THAT(refusal(folder.write("volts.txt", "# Value units: V\n1\n")), HasSubstr("'V'"));
   EXPECT_THAT(refusal(folder.write("size.txt", "# Width: wide\n1\n")), HasSubstr("line 1"));
 }
@@ -242,7 +248,7 @@ TEST(Hdf5, names_the_data_sets_that_a_file_has) {
   EXPECT_THAT(refusal(folder.write("cut.h5", bytes.substr(0, bytes.size() / 2)), {"", "scan/height", false}),
               HasSubstr("damaged"));
   EXPECT_THAT(refusal(folder.write("text.h5", "1 2 3\n"), {"", "a", false}), HasSubstr("another format"));
-  EXPECT_THAT(refusal(folder.write("a.txt", "1\n"), {"", "a", false}), HasSubstr("not an HDF5"));
+  EXPECT_THAT(contradiction(folder.write("a.txt", "1\n"), {"", "a", false}), HasSubstr("not an HDF5"));
 }
 
 }  // namespace

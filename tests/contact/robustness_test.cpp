@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "contact/certificate.h"
 #include "influence/displacement.h"
 #include "support/direct_contact.h"
 #include "support/workbench.h"
@@ -40,6 +41,39 @@ double mean(const std::vector<double>& gap) {
   double sum = 0;
   for (const double h : gap) sum += h;
   return sum / static_cast<double>(gap.size());
+}
+
+TEST(Certificate, of_what_is_no_number_proves_nothing) {
+  const Grid grid{4, 4, 1, 1};
+  const Evidence sound{{2, 0, 0}, 3, 0, 0, 0};
+  EXPECT_EQ(certificate_of(sound, {Drive::force, 2}, grid).worst(), 0);
+  for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
+    for (double Evidence::*const member :
+         {&Evidence::displacement, &Evidence::depth, &Evidence::complementarity, &Evidence::tension_displacement}) {
+      Evidence evidence = sound;
+      evidence.*member = bad;
+      EXPECT_EQ(certificate_of(evidence, {Drive::force, 2}, grid).worst(), HUGE_VAL);
+    }
+    for (double PlaneSums::*const sum : {&PlaneSums::one, &PlaneSums::x, &PlaneSums::y}) {
+      Evidence evidence = sound;
+      evidence.pressure.*sum = bad;
+      EXPECT_EQ(certificate_of(evidence, {Drive::force, 2}, grid).worst(), HUGE_VAL);
+    }
+    EXPECT_EQ(certificate_of(sound, {Drive::force, bad}, grid).worst(), HUGE_VAL);
+  }
+  // 0/0, as of a product that underflows.
+  EXPECT_EQ(certificate_of({{0, 0, 0}, 3, 0, 0, 0}, {Drive::approach, 1}, grid).worst(), HUGE_VAL);
+}
+
+TEST(Contact, beyond_the_range_of_numbers_is_not_certified) {
+  const Workbench bench;
+  const Grid grid{32, 24, 1, 1};
+  for (const bool mixed : {false, true}) {
+    const Pressed pressed =
+        press(bench, grid, Boundary::free, support::random_gap(grid, 0.01, 1), {Drive::force, 1e307, kTight}, mixed);
+    EXPECT_FALSE(pressed.solution.converged);
+    EXPECT_EQ(pressed.solution.certificate.worst(), HUGE_VAL);
+  }
 }
 
 TEST(Contact, of_one_node_has_its_own_compliance) {
