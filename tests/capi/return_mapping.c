@@ -109,7 +109,8 @@ static void every_law_is_met(void) {
 }
 
 static void depth_factors_scale_the_yield_stress(void) {
-  static const double depths[] = {0.0, 2e-6}, factors[] = {2.0, 1.0}, layers[] = {0.0, 1e-6, 5e-6};
+  static const double depths[] = {0.0, 2e-6}, factors[] = {2.0, 1.0},
+                      layers[] = {0.0, 1e-6, 5e-6, 6e-6, 7e-6, 8e-6, 9e-6};
   brn_engine *engine = plain_engine(1);
   batch *b = malloc(sizeof *b);
   brn_hardening h = law_of(BRN_HARDENING_PERFECT);
