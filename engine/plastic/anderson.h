@@ -20,7 +20,7 @@ namespace brinell::plastic {
 struct AndersonPart {
   double* x = nullptr;
   const double* mapped = nullptr;
-  std::size_t size = 0;                     // a multiple of Anderson::kBlock
+  std::size_t size = 0;                    // a multiple of Anderson::kBlock
   std::span<const std::int64_t> blocks{};  // those of an iteration before are among them
 };
 

@@ -108,19 +108,21 @@ PlasticSolution ElasticPlastic::reach(const contact::Load& load, contact::Observ
     solution.contact.iterations = iterations;
     solution.contact.convolutions = convolutions;
 
-    bool grown = false;
-    for_bodies([&](PlasticBody& body) { grown = body.cover(contact_box()) || grown; });
+    for_bodies([&](PlasticBody& body) {
+      if (body.cover(contact_box())) size = 0;
+    });
     YieldError error;
     for_bodies([&](PlasticBody& body) {
       const YieldError one = body.evaluate(solver_.pressure().data(), settings_.contact_modulus);
       error.yield = std::max(error.yield, one.yield);
       error.flow = std::max(error.flow, one.flow);
     });
+    bool grown = false;
     for_bodies([&](PlasticBody& body) { grown = body.make_room_for_flow() || grown; });
     solution.yield = error.yield;
     const bool known = !grown && std::isfinite(error.worst());
-    solution.converged = known && error.worst() <= settings_.tolerance &&
-                         contact.certificate.worst() <= settings_.tolerance;
+    solution.converged =
+        known && error.worst() <= settings_.tolerance && contact.certificate.worst() <= settings_.tolerance;
     if (solution.converged || solution.iterations >= kIterations) return solution;
     contact_tolerance = std::clamp(kContactToYield * error.worst(), least, std::max(least, kFirstContact));
     if (grown) {

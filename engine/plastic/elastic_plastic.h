@@ -8,8 +8,8 @@
 //   d  <-  Anderson acceleration of d = mapped
 //
 // with no loop within: the contact is solved as exactly as the plastic strain deserves. (C. Jacq, D. Nelias, G.
-// Lormand & D. Girodin, 2002, and V. Boucly, D. Nelias, S. Liu, Q. J. Wang & L. M. Keer, 2005, nest loops and leave the
-// residual stress behind by one increment; the yield condition then holds to first order only.)
+// Lormand & D. Girodin, 2002, and V. Boucly, D. Nelias, S. Liu, Q. J. Wang & L. M. Keer, 2005, nest loops and leave
+// the residual stress behind by one increment; the yield condition then holds to first order only.)
 //
 // An increment that does not converge is divided in two, again and again, and what is solved stays solved.
 #pragma once
@@ -28,7 +28,7 @@ namespace brinell::plastic {
 struct PairSettings {
   double contact_modulus = 0;  // E* [Pa], of both bodies
   Layers layers;
-  double tolerance = 1e-8;  // on the contact's certificate and on the yield condition
+  double tolerance = 1e-8;             // on the contact's certificate and on the yield condition
   std::int32_t max_iterations = 2000;  // of one contact
   std::size_t spectra_limit = 0;       // [bytes] of coefficients of the stress that each body may keep
 };
@@ -50,13 +50,14 @@ struct PlasticSolution {
 
 class ElasticPlastic {
  public:
-  /// The solver stands on present_gap, which this changes: gap, of the undeformed bodies, plus what the plastic strain
-  /// adds. All are borrowed. Free boundary.
+  /// The solver stands on present_gap, which this changes: gap, of the undeformed bodies, plus what the plastic
+  /// strain adds. All are borrowed. Free boundary.
   ElasticPlastic(const contact::Resources& resources, const Grid& grid, const double* gap, double* present_gap,
                  contact::Solver& solver, const Pair& pair, const PairSettings& settings);
 
   /// Solves one increment up to the load. If the observer stops it, or anything fails, the error is passed on and the
-  /// state is that before. Throws Status::invalid_scene where plastic strain reaches the last layer or the grid's side.
+  /// state is that before. Throws Status::invalid_scene where plastic strain reaches the last layer or the grid's
+  /// side.
   PlasticSolution advance(const contact::Load& load, contact::Observer observer);
 
   /// 0 lower, 1 upper; null: it does not harden, or the lower one stands for it.

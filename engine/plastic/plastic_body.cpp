@@ -164,11 +164,10 @@ void PlasticBody::move_to(const Region& next) {
     for (std::size_t c = 0; c < components; ++c) {
       for (std::int64_t k = 0; k < before.box.nz; ++k) {
         for (std::int64_t j = 0; j < before.box.ny; ++j) {
-          const std::int64_t to =
-              (k * box.ny + j + before.j0 - region_.j0) * box.nx + before.i0 - region_.i0;
-          std::copy_n(field.data() + c * stride_before +
-                          static_cast<std::size_t>((k * before.box.ny + j) * before.box.nx),
-                      before.box.nx, result.data() + c * stride_ + static_cast<std::size_t>(to));
+          const std::int64_t to = (k * box.ny + j + before.j0 - region_.j0) * box.nx + before.i0 - region_.i0;
+          std::copy_n(
+              field.data() + c * stride_before + static_cast<std::size_t>((k * before.box.ny + j) * before.box.nx),
+              before.box.nx, result.data() + c * stride_ + static_cast<std::size_t>(to));
         }
       }
     }
@@ -335,8 +334,7 @@ YieldError PlasticBody::compare(Buffer<double>& trial) {
   const auto chunks = (static_cast<std::int64_t>(cuboids) + kChunk - 1) / kChunk;
   std::vector<double> worst(static_cast<std::size_t>(chunks));
   const double twice_mu = 2 * shear_modulus_;
-  backend_.arena.for_chunks(static_cast<std::int64_t>(cuboids), kChunk,
-                            [&](std::int64_t from, std::int64_t to, int) {
+  backend_.arena.for_chunks(static_cast<std::int64_t>(cuboids), kChunk, [&](std::int64_t from, std::int64_t to, int) {
     const auto begin = static_cast<std::size_t>(from), end = static_cast<std::size_t>(to);
     simd::StressArrays stress;
     for (std::size_t c = 0; c < kAll; ++c) {
