@@ -1,6 +1,7 @@
 #include "plastic/elastic_plastic.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "base/error.h"
@@ -8,6 +9,12 @@
 namespace brinell::plastic {
 
 namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 constexpr std::size_t kDepth = 6;  // of the acceleration
 constexpr std::int32_t kIterations = 60;
@@ -39,6 +46,10 @@ ElasticPlastic::ElasticPlastic(const contact::Resources& resources, const Grid& 
                                                    settings.spectra_limit);
   }
   approach_ = solver.first_touch();
+}
+
+std::size_t ElasticPlastic::acceleration_bytes(std::size_t unknowns) {
+  return Anderson::bytes(kDepth, unknowns);
 }
 
 template <class Body>
@@ -98,10 +109,13 @@ PlasticSolution ElasticPlastic::reach(const contact::Load& load, contact::Observ
   double contact_tolerance = guessed ? std::max(least, kFirstContact) : least;
   PlasticSolution solution;
   std::size_t size = 0;
+  auto last = Clock::now();
   while (true) {
     ++solution.iterations;
     displace();
+    solution.plastic_seconds += seconds_since(last);
     const contact::Solution contact = solver_.solve(load, contact_tolerance, settings_.max_iterations, observer);
+    last = Clock::now();
     const std::int32_t iterations = solution.contact.iterations + contact.iterations;
     const std::int32_t convolutions = solution.contact.convolutions + contact.convolutions;
     solution.contact = contact;
@@ -123,7 +137,10 @@ PlasticSolution ElasticPlastic::reach(const contact::Load& load, contact::Observ
     const bool known = !grown && std::isfinite(error.worst());
     solution.converged =
         known && error.worst() <= settings_.tolerance && contact.certificate.worst() <= settings_.tolerance;
-    if (solution.converged || solution.iterations >= kIterations) return solution;
+    if (solution.converged || solution.iterations >= kIterations) {
+      solution.plastic_seconds += seconds_since(last);
+      return solution;
+    }
     contact_tolerance = std::clamp(kContactToYield * error.worst(), least, std::max(least, kFirstContact));
     if (grown) {
       size = 0;
@@ -173,6 +190,7 @@ PlasticSolution ElasticPlastic::advance(const contact::Load& load, contact::Obse
       solution.contact.convolutions = convolutions;
       solution.iterations = iterations;
       solution.yield = one.yield;
+      solution.plastic_seconds += one.plastic_seconds;
       if (!one.converged && halvings < kHalvings) {
         restore(done > 0 ? start : before);
         part /= 2;

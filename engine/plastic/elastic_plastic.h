@@ -45,7 +45,8 @@ struct PlasticSolution {
   double yield = 0;             // worst violation of the yield condition, relative to the yield stress
   std::int32_t iterations = 0;  // of plastic strain
   std::int32_t substeps = 1;
-  double dissipation = 0;  // plastic work of the increment [J]
+  double dissipation = 0;      // plastic work of the increment [J]
+  double plastic_seconds = 0;  // spent on all but the contact
 };
 
 class ElasticPlastic {
@@ -59,6 +60,9 @@ class ElasticPlastic {
   /// state is that before. Throws Status::invalid_scene where plastic strain reaches the last layer or the grid's
   /// side.
   PlasticSolution advance(const contact::Load& load, contact::Observer observer);
+
+  /// Bytes of the acceleration for so many strain components of cuboids.
+  static std::size_t acceleration_bytes(std::size_t unknowns);
 
   /// 0 lower, 1 upper; null: it does not harden, or the lower one stands for it.
   PlasticBody* body(int which) { return bodies_[static_cast<std::size_t>(which)].get(); }

@@ -49,6 +49,10 @@ PlasticBody::PlasticBody(const fft::Backend& backend, const Grid& grid, const La
   if (!material.hardening.depth_factor.empty()) layer_factor_ = law_.factors_at(depths);
 }
 
+std::size_t PlasticBody::stride_of(const Box& box) {
+  return (box.cuboids() + kBlock - 1) / kBlock * kBlock;
+}
+
 TensorView PlasticBody::view(const Buffer<double>& field) const {
   TensorView tensor{};
   for (std::size_t c = 0; c < kAll; ++c) tensor[c] = field.data() + c * stride_;
@@ -157,7 +161,7 @@ void PlasticBody::move_to(const Region& next) {
   response_.reset();
   stress_.reset();
   const Box& box = region_.box;
-  stride_ = (box.cuboids() + kBlock - 1) / kBlock * kBlock;
+  stride_ = stride_of(box);
   const auto moved_field = [&](const Buffer<double>& field, std::size_t components) {
     Buffer<double> result(components * stride_);
     if (before.empty()) return result;

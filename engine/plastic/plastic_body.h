@@ -74,6 +74,7 @@ class PlasticBody {
 
   const Region& region() const { return region_; }
   std::size_t stride() const { return stride_; }
+  static std::size_t stride_of(const Box& box);
   const YieldCurve& law() const { return law_; }
   double shear_modulus() const { return shear_modulus_; }
 

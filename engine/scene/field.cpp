@@ -13,11 +13,12 @@ struct Known {
   std::optional<subsurface::Invariant> invariant;
 };
 
-constexpr std::array<Known, 11> kKnown{{
+constexpr std::array<Known, 15> kKnown{{
     {Field::pressure, "pressure", {}},
     {Field::gap, "gap", {}},
     {Field::displacement, "displacement", {}},
     {Field::undeformed_gap, "undeformed_gap", {}},
+    {Field::residual_displacement, "residual_displacement", {}},
     {Field::stress, "stress", {}},
     {Field::von_mises, "von_mises", subsurface::Invariant::von_mises},
     {Field::tresca, "tresca", subsurface::Invariant::tresca},
@@ -25,6 +26,9 @@ constexpr std::array<Known, 11> kKnown{{
     {Field::principal_1, "principal_1", subsurface::Invariant::principal_1},
     {Field::principal_2, "principal_2", subsurface::Invariant::principal_2},
     {Field::principal_3, "principal_3", subsurface::Invariant::principal_3},
+    {Field::plastic_strain, "plastic_strain", {}},
+    {Field::equivalent_plastic_strain, "equivalent_plastic_strain", {}},
+    {Field::residual_stress, "residual_stress", {}},
 }};
 
 Field of_lower_body(Field field) {
@@ -43,7 +47,7 @@ std::optional<Field> field_of(std::int32_t number) {
   const auto field = static_cast<Field>(number);
   for (const Known& one : kKnown) {
     if (one.field == field) return field;
-    if (is_below_surface(one.field) && one.field == of_lower_body(field)) return field;
+    if (one.field >= Field::residual_displacement && one.field == of_lower_body(field)) return field;
   }
   return {};
 }
@@ -52,8 +56,16 @@ bool is_below_surface(Field field) {
   return of_lower_body(field) >= Field::stress;
 }
 
+bool is_stress(Field field) {
+  return of_lower_body(field) >= Field::stress && of_lower_body(field) <= Field::principal_3;
+}
+
+bool is_plastic(Field field) {
+  return of_lower_body(field) == Field::residual_displacement || of_lower_body(field) >= Field::plastic_strain;
+}
+
 std::string name(Field field) {
-  return std::string(is_below_surface(field) && body_of(field) == Which::upper ? "upper_" : "") + known(field).name;
+  return std::string(body_of(field) == Which::upper ? "upper_" : "") + known(field).name;
 }
 
 Which body_of(Field field) {
@@ -65,7 +77,9 @@ std::optional<subsurface::Invariant> invariant_of(Field field) {
 }
 
 std::size_t values_per_node(Field field) {
-  return of_lower_body(field) == Field::stress ? static_cast<std::size_t>(subsurface::kComponents) : 1;
+  const Field lower = of_lower_body(field);
+  const bool tensor = lower == Field::stress || lower == Field::plastic_strain || lower == Field::residual_stress;
+  return tensor ? static_cast<std::size_t>(subsurface::kComponents) : 1;
 }
 
 }  // namespace brinell::scene

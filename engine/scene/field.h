@@ -16,13 +16,17 @@ enum class Field : std::int32_t {
   gap = 2,
   displacement = 3,
   undeformed_gap = 4,
-  stress = 20,  // below the lower body's surface; the upper body's are higher by kUpperField
+  residual_displacement = 10,  // of the lower body; the upper body's is higher by kUpperField
+  stress = 20,                 // below the lower body's surface; the upper body's are higher by kUpperField
   von_mises = 21,
   tresca = 22,
   hydrostatic = 23,
   principal_1 = 24,
   principal_2 = 25,
   principal_3 = 26,
+  plastic_strain = 30,
+  equivalent_plastic_strain = 31,
+  residual_stress = 32,
 };
 inline constexpr std::int32_t kUpperField = 100;
 
@@ -30,13 +34,15 @@ inline constexpr std::int32_t kUpperField = 100;
 std::optional<Field> field_of(std::int32_t number);
 
 bool is_below_surface(Field field);
+bool is_stress(Field field);   // the total one, or an invariant of it
+bool is_plastic(Field field);  // exists for a body that hardens
 
 /// "pressure", "upper_von_mises".
 std::string name(Field field);
 
-/// Of a field below the surface:
+/// Of a field of one body:
 Which body_of(Field field);
-std::optional<subsurface::Invariant> invariant_of(Field field);  // nothing: all six components
+std::optional<subsurface::Invariant> invariant_of(Field field);  // of a stress; nothing: all six components
 std::size_t values_per_node(Field field);                        // of a tensor 6, else 1
 
 }  // namespace brinell::scene
