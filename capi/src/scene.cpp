@@ -191,9 +191,10 @@ brn_status brn_scene_set_subsurface(brn_scene* scene, const brn_subsurface* subs
     for (std::size_t k = 0; k < s.field_count; ++k) {
       const auto field = scene::field_of(s.fields[k]);
       if (!field || !scene::is_below_surface(*field)) {
-        fail(Status::invalid_argument,
-             "fields[" + std::to_string(k) + "] = " + std::to_string(s.fields[k]) +
-                 ": allowed are 20 (stress) to 26 (principal_3), 120 (upper_stress) to 126 (upper_principal_3)");
+        fail(Status::invalid_argument, "fields[" + std::to_string(k) + "] = " + std::to_string(s.fields[k]) +
+                                           ": allowed are 20 (stress) to 26 (principal_3), 30 (plastic_strain) to 32 "
+                                           "(residual_stress), and each "
+                                           "plus 100 for the upper body");
       }
       if (std::find(wanted.fields.begin(), wanted.fields.end(), *field) == wanted.fields.end()) {
         wanted.fields.push_back(*field);
