@@ -25,7 +25,8 @@ constexpr double kLateral = 1.5;
 constexpr double kDepth = 2.1;
 // Nodes in contact stay this far from the sides of the box, flow at least as many cuboids.
 constexpr std::int64_t kShells = 2;
-// Flow of this part of the largest plastic strain does not count at a side: laws without a yield stress flow everywhere.
+// Flow of this part of the largest plastic strain does not count at a side: laws without a yield stress flow
+// everywhere.
 constexpr double kNegligible = 1e-5;
 // Where flow has reached a side, all move by this part of the box: coefficients of a box take longer to generate than
 // those of a few smaller ones would save.
