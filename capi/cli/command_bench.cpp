@@ -75,6 +75,7 @@ double solve_once(brn_engine* engine, const brn_scene* scene, Json& facts) {
     iterations += increment.iterations;
     certificate = std::max(
         {certificate, increment.penetration, increment.complementarity, increment.tension, increment.balance});
+    if (increment.yield > certificate) certificate = increment.yield;
   }
   facts = {{"increments", increments}, {"iterations", iterations}, {"certificate", certificate}};
   return seconds;

@@ -47,6 +47,30 @@ constexpr NumberMember<brn_roughness> kRoughNumbers[] = {
     {"rolloff", &brn_roughness::rolloff},       {"short_cutoff", &brn_roughness::short_cutoff},
 };
 
+constexpr NumberMember<brn_hardening> kHardeningNumbers[] = {
+    {"B", &brn_hardening::B},
+    {"C", &brn_hardening::C},
+    {"n", &brn_hardening::n},
+    {"strain_scale", &brn_hardening::strain_scale},
+    {"yield_stress", &brn_hardening::yield_stress},
+    {"hardening_modulus", &brn_hardening::hardening_modulus},
+    {"saturation_stress", &brn_hardening::saturation_stress},
+    {"rate", &brn_hardening::rate},
+    {"K", &brn_hardening::K},
+    {"m", &brn_hardening::m},
+};
+
+struct LawKind {
+  const char* name;
+  int law;
+};
+
+constexpr LawKind kLaws[] = {
+    {"swift", BRN_HARDENING_SWIFT},     {"linear", BRN_HARDENING_LINEAR},
+    {"perfect", BRN_HARDENING_PERFECT}, {"voce", BRN_HARDENING_VOCE},
+    {"table", BRN_HARDENING_TABLE},     {"ramberg-osgood", BRN_HARDENING_RAMBERG_OSGOOD},
+};
+
 template <class Struct, std::size_t size>
 void fill_in(Struct& target, const std::map<std::string, double>& numbers,
              const NumberMember<Struct> (&members)[size]) {
@@ -70,6 +94,7 @@ class Builder {
     const brn_grid grid = set_grid();
     set_body(BRN_LOWER, file_.lower);
     set_body(BRN_UPPER, file_.upper.same_as_lower ? file_.lower : file_.upper);
+    set_hardening();
     for (std::size_t k = 0; k < file_.surfaces.size(); ++k) add_surface(file_.surfaces[k], k, grid);
     for (const auto& step : file_.steps) add_step(step, grid);
     set_subsurface();
@@ -99,8 +124,6 @@ class Builder {
 
   void refuse_unsupported() const {
     const std::string release = std::string(" is not supported by brinell ") + brn_version();
-    if (file_.lower.hardening) fail(file_.lower.hardening->line, "[lower.hardening]" + release);
-    if (file_.upper.hardening) fail(file_.upper.hardening->line, "[upper.hardening]" + release);
     for (const auto& step : file_.steps) {
       if (step.offset) fail(step.line, "[[step]]: offset" + release);
     }
@@ -160,6 +183,42 @@ class Builder {
     body.youngs_modulus = part.youngs_modulus;
     body.poissons_ratio = part.poissons_ratio;
     accept(brn_scene_set_body(scene_.get(), which, &body), part.line, which == BRN_LOWER ? "[lower]" : "[upper]");
+  }
+
+  void set_hardening() const {
+    const auto set = [&](int which, const BodyPart& part, const char* label) {
+      if (!part.hardening) return;
+      const HardeningPart& from = *part.hardening;
+      brn_hardening hardening;
+      brn_hardening_init(&hardening);
+      for (const auto& [name, law] : kLaws) {
+        if (from.law == name) hardening.law = law;
+      }
+      fill_in(hardening, from.numbers, kHardeningNumbers);
+      hardening.plastic_strain = from.plastic_strain.data();
+      hardening.stress = from.stress.data();
+      hardening.point_count = from.stress.size();
+      std::vector<double> depths, factors;
+      for (const auto& [depth, factor] : from.depth_factor) {
+        depths.push_back(depth);
+        factors.push_back(factor);
+      }
+      hardening.depths = depths.data();
+      hardening.depth_factors = factors.data();
+      hardening.depth_count = depths.size();
+      accept(brn_scene_set_hardening(scene_.get(), which, &hardening), from.line, label);
+    };
+    set(BRN_LOWER, file_.lower, "[lower.hardening]");
+    set(BRN_UPPER, file_.upper, "[upper.hardening]");
+    if (file_.upper.same_as_lower) {
+      accept(brn_scene_set_identical(scene_.get(), 1), file_.upper.line, "[upper]");
+    }
+    if (!file_.lower.hardening && !file_.upper.hardening) return;
+    const GridPart& grid = file_.grid;
+    if (grid.layers == 0 || grid.layer_thickness == 0) {
+      fail(grid.line, "[grid]: layers and layer_thickness are missing, which a body that hardens needs");
+    }
+    accept(brn_scene_set_layers(scene_.get(), grid.layers, grid.layer_thickness), grid.line, "[grid]");
   }
 
   void add_surface(const SurfacePart& part, std::size_t index, const brn_grid& grid) {
@@ -257,6 +316,7 @@ class Builder {
     std::string first;  // that asks
     for (const auto& name : file_.output.fields) {
       const FieldInfo info = field_info(name);
+      refuse_elastic(name, info);
       if (!info.is_below_surface()) continue;
       fields.push_back(info.id);
       if (first.empty()) first = "the field " + name;
@@ -284,15 +344,24 @@ class Builder {
     accept(brn_scene_set_subsurface(scene_.get(), &wanted), file_.output.line, "[output]");
   }
 
+  void refuse_elastic(const std::string& name, const FieldInfo& info) const {
+    if (!info.is_plastic()) return;
+    const BodyPart& body = info.is_upper() && !file_.upper.same_as_lower ? file_.upper : file_.lower;
+    if (body.hardening) return;
+    fail(file_.output.line, "[output]: the field " + name + " is asked for, but that body has no hardening; add [" +
+                                (info.is_upper() ? "upper" : "lower") + ".hardening] or leave the field out");
+  }
+
   void refuse_rigid(const brn_subsurface& wanted, const std::vector<std::int32_t>& fields) const {
     bool lower = wanted.max_von_mises != 0;
     bool upper = wanted.upper_max_von_mises != 0;
-    for (const std::int32_t field : fields) (field < BRN_FIELD_UPPER_STRESS ? lower : upper) = true;
+    for (const std::int32_t field : fields) (field < BRN_FIELD_UPPER_RESIDUAL_DISPLACEMENT ? lower : upper) = true;
     const std::string reason = " body's stress is asked for, but that body is rigid; expected ";
     if (lower && file_.lower.rigid) {
       fail(file_.output.line, "[output]: the lower" + reason + "the upper body's, with the prefix upper_");
     }
-    if (upper && file_.upper.rigid) fail(file_.output.line, "[output]: the upper" + reason + "the lower body's");
+    if (upper && file_.upper.rigid && !file_.upper.same_as_lower)
+      fail(file_.output.line, "[output]: the upper" + reason + "the lower body's");
   }
 
   const SceneFile& file_;
@@ -311,6 +380,8 @@ FieldInfo field_info(const std::string& name) {
   if (name == "gap") return {BRN_FIELD_GAP, "m"};
   if (name == "displacement") return {BRN_FIELD_DISPLACEMENT, "m"};
   if (name == "undeformed_gap") return {BRN_FIELD_UNDEFORMED_GAP, "m"};
+  if (name == "residual_displacement") return {BRN_FIELD_RESIDUAL_DISPLACEMENT, "m"};
+  if (name == "upper_residual_displacement") return {BRN_FIELD_UPPER_RESIDUAL_DISPLACEMENT, "m"};
   const bool is_upper = name.starts_with("upper_");
   const std::string of_body = is_upper ? name.substr(6) : name;
   constexpr const char* kStresses[] = {"stress",      "von_mises",   "tresca",     "hydrostatic",
@@ -321,6 +392,10 @@ FieldInfo field_info(const std::string& name) {
   for (int k = 0; k < 7; ++k) {
     if (of_body == kStresses[k]) return {(is_upper ? BRN_FIELD_UPPER_STRESS : BRN_FIELD_STRESS) + k, "Pa"};
   }
+  const int body = is_upper ? BRN_FIELD_UPPER_STRESS - BRN_FIELD_STRESS : 0;
+  if (of_body == "plastic_strain") return {BRN_FIELD_PLASTIC_STRAIN + body, "1"};
+  if (of_body == "equivalent_plastic_strain") return {BRN_FIELD_EQUIVALENT_PLASTIC_STRAIN + body, "1"};
+  if (of_body == "residual_stress") return {BRN_FIELD_RESIDUAL_STRESS + body, "Pa"};
   return {0, ""};
 }
 

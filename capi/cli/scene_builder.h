@@ -20,10 +20,16 @@ struct FieldInfo {
   int id;
   const char* unit;
 
-  bool is_below_surface() const { return id >= BRN_FIELD_STRESS; }
-  bool is_tensor() const { return id == BRN_FIELD_STRESS || id == BRN_FIELD_UPPER_STRESS; }
-  bool is_directions() const {
-    return id == BRN_FIELD_PRINCIPAL_DIRECTIONS || id == BRN_FIELD_UPPER_PRINCIPAL_DIRECTIONS;
+  int of_lower() const { return is_upper() ? id - (BRN_FIELD_UPPER_STRESS - BRN_FIELD_STRESS) : id; }
+  bool is_upper() const { return id >= BRN_FIELD_UPPER_RESIDUAL_DISPLACEMENT; }
+  bool is_below_surface() const { return of_lower() >= BRN_FIELD_STRESS; }
+  bool is_tensor() const {
+    return of_lower() == BRN_FIELD_STRESS || of_lower() == BRN_FIELD_PLASTIC_STRAIN ||
+           of_lower() == BRN_FIELD_RESIDUAL_STRESS;
+  }
+  bool is_directions() const { return of_lower() == BRN_FIELD_PRINCIPAL_DIRECTIONS; }
+  bool is_plastic() const {
+    return of_lower() == BRN_FIELD_RESIDUAL_DISPLACEMENT || of_lower() >= BRN_FIELD_PLASTIC_STRAIN;
   }
 };
 FieldInfo field_info(const std::string& name);

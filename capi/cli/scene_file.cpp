@@ -253,7 +253,11 @@ OutputPart read_output(TomlTable& table) {
                                                 "plastic_strain",
                                                 "equivalent_plastic_strain",
                                                 "residual_stress",
-                                                "residual_displacement"};
+                                                "residual_displacement",
+                                                "upper_plastic_strain",
+                                                "upper_equivalent_plastic_strain",
+                                                "upper_residual_stress",
+                                                "upper_residual_displacement"};
   OutputPart output;
   output.line = table.line();
   const auto fields = table.texts("fields", kFields);

@@ -409,7 +409,7 @@ BRN_API const char *brn_run_message(const brn_run *run);
 /* One line of the plan: a stage, what it holds or carries out, and the bytes that takes. */
 typedef struct brn_plan_item {
   size_t struct_size;
-  const char *stage; /* "surface", "contact", "stress"; lives as long as the run */
+  const char *stage; /* "surface", "contact", "plastic", "stress"; lives as long as the run */
   const char *what;
   uint64_t bytes;
 } brn_plan_item;
@@ -485,6 +485,17 @@ typedef struct brn_increment {
   double upper_max_von_mises, upper_max_von_mises_at[3];
   int32_t stress_missing; /* 0; 1: its stress was cancelled or failed, and the next brn_run_advance computes it */
   int32_t reserved2;
+  /* Of bodies that harden; NaN and 0 for others: */
+  double yield; /* entry of the certificate: worst violation of the yield condition by the total stress, in cuboids
+                   that flow its distance from it, relative to the yield stress */
+  int32_t substeps; /* parts in which the increment was solved: 1 unless it did not converge as a whole */
+  int32_t reserved3;
+  double max_equivalent_plastic_strain;
+  double max_equivalent_plastic_strain_at[3]; /* centre of its cuboid, in the body's own frame [m] */
+  int64_t plastic_nodes;                      /* cuboids that have flowed */
+  double upper_max_equivalent_plastic_strain;
+  double upper_max_equivalent_plastic_strain_at[3];
+  int64_t upper_plastic_nodes;
 } brn_increment;
 
 static inline void brn_increment_init(brn_increment *value) {
@@ -523,6 +534,19 @@ static inline void brn_increment_init(brn_increment *value) {
   value->upper_max_von_mises_at[2] = 0.0;
   value->stress_missing = 0;
   value->reserved2 = 0;
+  value->yield = 0.0;
+  value->substeps = 0;
+  value->reserved3 = 0;
+  value->max_equivalent_plastic_strain = 0.0;
+  value->max_equivalent_plastic_strain_at[0] = 0.0;
+  value->max_equivalent_plastic_strain_at[1] = 0.0;
+  value->max_equivalent_plastic_strain_at[2] = 0.0;
+  value->plastic_nodes = 0;
+  value->upper_max_equivalent_plastic_strain = 0.0;
+  value->upper_max_equivalent_plastic_strain_at[0] = 0.0;
+  value->upper_max_equivalent_plastic_strain_at[1] = 0.0;
+  value->upper_max_equivalent_plastic_strain_at[2] = 0.0;
+  value->upper_plastic_nodes = 0;
 }
 BRN_API brn_status brn_run_get_increment(brn_run *run, int32_t index, brn_increment *out);
 
@@ -561,8 +585,12 @@ enum {
   BRN_FIELD_GAP = 2,            /* of the deformed surfaces [m] */
   BRN_FIELD_DISPLACEMENT = 3,   /* normal, of both bodies together [m] */
   BRN_FIELD_UNDEFORMED_GAP = 4, /* [m]; known before the first increment */
+  /* Displacement of the surface that plastic strain alone leaves [m], positive into the body; where that body
+     hardens: */
+  BRN_FIELD_RESIDUAL_DISPLACEMENT = 10,
+  BRN_FIELD_UPPER_RESIDUAL_DISPLACEMENT = 110,
   /* Below the lower body's surface [Pa], tension positive; only those that brn_subsurface.fields names: */
-  BRN_FIELD_STRESS = 20, /* xx yy zz yz xz xy of each node, side by side */
+  BRN_FIELD_STRESS = 20, /* xx yy zz yz xz xy of each node, side by side; with the residual stress */
   BRN_FIELD_VON_MISES = 21,
   BRN_FIELD_TRESCA = 22,      /* the largest principal stress less the smallest */
   BRN_FIELD_HYDROSTATIC = 23, /* mean of the normal stresses, negative under pressure */
@@ -571,6 +599,9 @@ enum {
   BRN_FIELD_PRINCIPAL_3 = 26,
   BRN_FIELD_PRINCIPAL_DIRECTIONS = 27, /* unit vectors of principal stresses 1 to 3, one after the other: nine numbers
                                           of each node, side by side, [-]; their signs have no meaning */
+  BRN_FIELD_PLASTIC_STRAIN = 30,       /* tensor components, six numbers as of the stress */
+  BRN_FIELD_EQUIVALENT_PLASTIC_STRAIN = 31,
+  BRN_FIELD_RESIDUAL_STRESS = 32, /* that of the plastic strain alone [Pa], six numbers */
   /* Below the upper body's surface: */
   BRN_FIELD_UPPER_STRESS = 120,
   BRN_FIELD_UPPER_VON_MISES = 121,
@@ -579,13 +610,16 @@ enum {
   BRN_FIELD_UPPER_PRINCIPAL_1 = 124,
   BRN_FIELD_UPPER_PRINCIPAL_2 = 125,
   BRN_FIELD_UPPER_PRINCIPAL_3 = 126,
-  BRN_FIELD_UPPER_PRINCIPAL_DIRECTIONS = 127
+  BRN_FIELD_UPPER_PRINCIPAL_DIRECTIONS = 127,
+  BRN_FIELD_UPPER_PLASTIC_STRAIN = 130,
+  BRN_FIELD_UPPER_EQUIVALENT_PLASTIC_STRAIN = 131,
+  BRN_FIELD_UPPER_RESIDUAL_STRESS = 132
 };
 
 /* Copies a field of the last solved increment: nx*ny doubles on the surface; below it layers*ny*nx, element
- * (layer*ny + j)*nx + i, each of the stress six numbers, of directions nine. *count receives the number needed;
- * values may be NULL if capacity is 0 (that returns BRN_OK: a query of the size). A run that was loaded, or whose
- * stress is missing, computes it here. BRN_WRONG_STATE: the scene does not ask for this field. */
+ * (layer*ny + j)*nx + i, each of a tensor six numbers, of directions nine. *count receives the number needed; values
+ * may be NULL if capacity is 0 (that returns BRN_OK: a query of the size). A run that was loaded, or whose stress is
+ * missing, computes it here. BRN_WRONG_STATE: the scene does not ask for this field. */
 BRN_API brn_status brn_run_get_field(brn_run *run, int32_t field, double *values, size_t capacity, size_t *count);
 
 /* The same for one layer of a field below the surface, counted from the uppermost: nx*ny doubles, six times as many
@@ -776,6 +810,19 @@ static inline void brn_hardening_init(brn_hardening *value) {
   value->depth_factors = NULL;
   value->depth_count = 0;
 }
+
+/* The body hardens after this law (NULL or BRN_HARDENING_NONE: it stays elastic), whatever brn_scene_set_body makes
+ * of it. Such scenes need a free boundary, layers, and no traction_ratio; depths of brn_subsurface must be the
+ * layers'. A run then solves plastic strain, residual stress and contact together; BRN_INVALID_SCENE from
+ * brn_run_advance: plastic strain has reached the last layer or the grid's side, and the state is that before the
+ * increment. */
+BRN_API brn_status brn_scene_set_hardening(brn_scene *scene, int32_t which, const brn_hardening *hardening);
+
+/* Layers of cuboids, thickness [m] > 0, in which plastic strain is uniform; their sides are the grid's spacing. */
+BRN_API brn_status brn_scene_set_layers(brn_scene *scene, int64_t layers, double thickness);
+
+/* 1: the upper body is the mirror image of the lower one, its material and hardening, and one field serves both. */
+BRN_API brn_status brn_scene_set_identical(brn_scene *scene, int32_t identical);
 
 /* Points of one isotropic body, count doubles in each array. Trial stress: the stress if the strain increment were
  * elastic, tension positive, BRN_XX ... BRN_XY. */

@@ -1,6 +1,7 @@
 #include <brinell.h>
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -110,6 +111,33 @@ std::vector<double> layer_factors(const plastic::YieldCurve& law, bool with_dept
 }  // namespace
 
 extern "C" {
+
+brn_status brn_scene_set_hardening(brn_scene* scene, int32_t which, const brn_hardening* hardening) {
+  return guarded_use(scene, "scene", [&] {
+    if (which != BRN_LOWER && which != BRN_UPPER) {
+      fail(Status::invalid_argument, "which = " + std::to_string(which) + ": allowed are 0 (lower) and 1 (upper)");
+    }
+    std::optional<plastic::Hardening> law;
+    if (hardening != nullptr &&
+        read(hardening, "hardening", brn_hardening_init, &brn_hardening::law).law != BRN_HARDENING_NONE) {
+      law = to_hardening(hardening, "hardening");
+    }
+    scene->scene.set_hardening(static_cast<scene::Which>(which), law);
+  });
+}
+
+brn_status brn_scene_set_layers(brn_scene* scene, int64_t layers, double thickness) {
+  return guarded_use(scene, "scene", [&] { scene->scene.set_layers({layers, thickness}); });
+}
+
+brn_status brn_scene_set_identical(brn_scene* scene, int32_t identical) {
+  return guarded_use(scene, "scene", [&] {
+    if (identical != 0 && identical != 1) {
+      fail(Status::invalid_argument, "identical = " + std::to_string(identical) + ": allowed are 0 and 1");
+    }
+    scene->scene.set_identical(identical != 0);
+  });
+}
 
 brn_status brn_return_map_batch(brn_engine* engine, const brn_hardening* hardening, const brn_return_points* points,
                                 const brn_return_result* result, int64_t* plastic_count) {

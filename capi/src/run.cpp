@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "handles.h"
@@ -42,14 +43,18 @@ void advance(scene::Run& run, brn_progress_callback callback, void* user) {
     fail(Status::not_converged, "step " + std::to_string(increment.position.step) + ", increment " +
                                     std::to_string(increment.position.increment) + " did not converge: after " +
                                     std::to_string(increment.iterations) + " iterations the certificate is " +
-                                    text(increment.certificate.worst()) + "; the tolerance is " +
-                                    text(run.tolerance()));
+                                    text(increment.worst()) + "; the tolerance is " + text(run.tolerance()));
   }
 }
 
-bool has_stage(const brn_run* run, int32_t index) {
-  return run != nullptr && index >= 0 && index < scene::kStages &&
-         run->run->has_stage(static_cast<scene::Stage>(index));
+/// The index-th stage that the run has.
+std::optional<scene::Stage> stage_of(const brn_run* run, int32_t index) {
+  if (run == nullptr || index < 0) return {};
+  for (int32_t k = 0; k < scene::kStages; ++k) {
+    const auto stage = static_cast<scene::Stage>(k);
+    if (run->run->has_stage(stage) && index-- == 0) return stage;
+  }
+  return {};
 }
 
 scene::Field checked_field(int32_t field) {
@@ -57,8 +62,10 @@ scene::Field checked_field(int32_t field) {
   if (!known) {
     fail(Status::invalid_argument,
          "field = " + std::to_string(field) +
-             ": allowed are 1 (pressure) to 4 (undeformed_gap), 20 (stress) to 27 (principal_directions) and 120 "
-             "(upper_stress) to 127 (upper_principal_directions)");
+             ": allowed are 1 (pressure) to 4 (undeformed_gap), 10 (residual_displacement), 20 (stress) to 27 "
+             "(principal_directions), 30 (plastic_strain) to 32 (residual_stress), and those from 10 on plus 100 for "
+             "the upper "
+             "body");
   }
   return *known;
 }
@@ -176,6 +183,14 @@ brn_status brn_run_get_increment(brn_run* run, int32_t index, brn_increment* out
     result.upper_max_von_mises = i.max_von_mises[BRN_UPPER].value;
     std::copy_n(i.max_von_mises[BRN_UPPER].at, 3, result.upper_max_von_mises_at);
     result.stress_missing = i.stress_missing ? 1 : 0;
+    result.yield = i.yield;
+    result.substeps = i.substeps;
+    result.max_equivalent_plastic_strain = i.plastic[BRN_LOWER].largest;
+    std::copy_n(i.plastic[BRN_LOWER].at, 3, result.max_equivalent_plastic_strain_at);
+    result.plastic_nodes = i.plastic[BRN_LOWER].cuboids;
+    result.upper_max_equivalent_plastic_strain = i.plastic[BRN_UPPER].largest;
+    std::copy_n(i.plastic[BRN_UPPER].at, 3, result.upper_max_equivalent_plastic_strain_at);
+    result.upper_plastic_nodes = i.plastic[BRN_UPPER].cuboids;
     write(result, out, &brn_increment::step, &brn_increment::increment, &brn_increment::converged,
           &brn_increment::iterations, &brn_increment::convolutions, &brn_increment::contact_nodes,
           &brn_increment::normal_force, &brn_increment::approach, &brn_increment::tilt,
@@ -184,7 +199,11 @@ brn_status brn_run_get_increment(brn_run* run, int32_t index, brn_increment* out
           &brn_increment::penetration, &brn_increment::complementarity, &brn_increment::tension,
           &brn_increment::balance, &brn_increment::wall_seconds, &brn_increment::max_von_mises,
           &brn_increment::max_von_mises_at, &brn_increment::upper_max_von_mises,
-          &brn_increment::upper_max_von_mises_at, &brn_increment::stress_missing, &brn_increment::reserved2);
+          &brn_increment::upper_max_von_mises_at, &brn_increment::stress_missing, &brn_increment::reserved2,
+          &brn_increment::yield, &brn_increment::substeps, &brn_increment::reserved3,
+          &brn_increment::max_equivalent_plastic_strain, &brn_increment::max_equivalent_plastic_strain_at,
+          &brn_increment::plastic_nodes, &brn_increment::upper_max_equivalent_plastic_strain,
+          &brn_increment::upper_max_equivalent_plastic_strain_at, &brn_increment::upper_plastic_nodes);
   });
 }
 
@@ -214,11 +233,13 @@ brn_status brn_run_get_trace_point(brn_run* run, int64_t index, brn_trace_point*
 }
 
 const char* brn_run_stage_name(const brn_run* run, int32_t index) {
-  return has_stage(run, index) ? scene::name(static_cast<scene::Stage>(index)) : nullptr;
+  const auto stage = stage_of(run, index);
+  return stage ? scene::name(*stage) : nullptr;
 }
 
 double brn_run_stage_seconds(const brn_run* run, int32_t index) {
-  return has_stage(run, index) ? run->run->stage_seconds(static_cast<scene::Stage>(index)) : 0;
+  const auto stage = stage_of(run, index);
+  return stage ? run->run->stage_seconds(*stage) : 0;
 }
 
 brn_status brn_run_get_field(brn_run* run, int32_t field, double* values, size_t capacity, size_t* count) {

@@ -203,8 +203,9 @@ brn_status brn_scene_set_subsurface(brn_scene* scene, const brn_subsurface* subs
       if (!field || !scene::is_below_surface(*field)) {
         fail(Status::invalid_argument,
              "fields[" + std::to_string(k) + "] = " + std::to_string(s.fields[k]) +
-                 ": allowed are 20 (stress) to 27 (principal_directions), 120 (upper_stress) to 127 "
-                 "(upper_principal_directions)");
+                 ": allowed are 20 (stress) to 27 (principal_directions), 30 (plastic_strain) to 32 "
+                 "(residual_stress), and each "
+                 "plus 100 for the upper body");
       }
       if (std::find(wanted.fields.begin(), wanted.fields.end(), *field) == wanted.fields.end()) {
         wanted.fields.push_back(*field);

@@ -43,8 +43,16 @@ Solver::Solver(const Resources& resources, const Grid& grid, Boundary boundary, 
       mixed_precision_(mixed_precision),
       p_(grid.nodes()),
       g_(grid.nodes()) {
+  gap_changed();
+  origin_ = first_touch_;
+  separate();
+}
+
+Solver::~Solver() = default;
+
+void Solver::gap_changed() {
   const auto sums = ordered_sum<GapSums>(
-      resources.backend.arena, static_cast<std::int64_t>(grid.nodes()), 1 << 14,
+      resources_.backend.arena, static_cast<std::int64_t>(grid_.nodes()), 1 << 14,
       [](GapSums& total, const GapSums& part) {
         total.least = std::min(total.least, part.least);
         total.sum += part.sum;
@@ -52,22 +60,19 @@ Solver::Solver(const Resources& resources, const Grid& grid, Boundary boundary, 
       [&](std::int64_t begin, std::int64_t end) {
         GapSums part;
         for (std::int64_t n = begin; n < end; ++n) {
-          part.least = std::min(part.least, gap[n]);
-          part.sum += gap[n];
+          part.least = std::min(part.least, gap_[n]);
+          part.sum += gap_[n];
         }
         return part;
       });
   first_touch_ = sums.least;
-  mean_gap_ = sums.sum / static_cast<double>(grid.nodes());
-  separate();
+  mean_gap_ = sums.sum / static_cast<double>(grid_.nodes());
 }
-
-Solver::~Solver() = default;
 
 /// No pressure: the undeformed gap.
 void Solver::separate() {
   std::fill(p_.begin(), p_.end(), 0.0);
-  for (std::size_t n = 0; n < g_.size(); ++n) g_[n] = scale_ * (gap_[n] - first_touch_);
+  for (std::size_t n = 0; n < g_.size(); ++n) g_[n] = scale_ * (gap_[n] - origin_);
   total_ = 0;
   approach_ = first_touch_;
   slope_x_ = slope_y_ = 0;
@@ -143,7 +148,7 @@ bool Solver::start_is_close(const Load& load) const {
 /// The approach at which the bodies touch under the load's slopes, or come to rest under its moments.
 double Solver::first_touch_of(const Load& load) const {
   if (!load.tilts()) return first_touch_;
-  if (load.moments) return has_rest() ? first_touch_ + rest_of(load).approach.constant / scale_ : first_touch_;
+  if (load.moments) return has_rest() ? origin_ + rest_of(load).approach.constant / scale_ : first_touch_;
   double least = HUGE_VAL;
   for (std::int64_t j = 0; j < grid_.ny; ++j) {
     for (std::int64_t i = 0; i < grid_.nx; ++i) {
@@ -196,14 +201,14 @@ Solution Solver::solve(const Load& load, double tolerance, std::int32_t max_iter
 /// In unit lengths.
 Load Solver::unit(const Load& load) const {
   Load unit_load = load;
-  if (load.drive == Drive::approach) unit_load.target = (load.target - first_touch_) * scale_;
+  if (load.drive == Drive::approach) unit_load.target = (load.target - origin_) * scale_;
   unit_load.force_x *= scale_;
   unit_load.force_y *= scale_;
   return unit_load;
 }
 
 Solution Solver::in_metres(const LevelResult& result) const {
-  return {result.converged,   first_touch_ + result.approach.constant / scale_,
+  return {result.converged,   origin_ + result.approach.constant / scale_,
           -result.approach.x, -result.approach.y,
           result.total,       result.certificate,
           result.iterations,  result.convolutions};
@@ -249,7 +254,8 @@ Solution Solver::solve_tilting_approach(const Load& load, double tolerance, std:
     return solution.approach - solution.slope_x * load.force_x - solution.slope_y * load.force_y;
   };
   const double touch =
-      has_rest() ? rest_of(load).approach.at(load.force_x * scale_, load.force_y * scale_) / scale_ : 0;
+      has_rest() ? origin_ + rest_of(load).approach.at(load.force_x * scale_, load.force_y * scale_) / scale_
+                 : first_touch_;
   Load trial = load;
   trial.drive = Drive::force;
   const double estimate =
@@ -267,7 +273,7 @@ Solution Solver::solve_tilting_approach(const Load& load, double tolerance, std:
     iterations += solution.iterations;
     convolutions += solution.convolutions;
     const bool solved = solution.converged;
-    const double depth = at_force(solution) - first_touch_ - touch;
+    const double depth = at_force(solution) - touch;
     const double missing = load.target - solution.approach;
     solution.certificate.balance = std::max(solution.certificate.balance, std::fabs(missing) / depth);
     solution.converged = solution.certificate.worst() <= tolerance;

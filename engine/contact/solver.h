@@ -33,7 +33,7 @@ struct SolverPart {
 /// Keeps the state of one contact from increment to increment. Lengths in metres, pressures in units of E*.
 class Solver {
  public:
-  /// gap [m] is borrowed: it outlives the solver and does not change.
+  /// gap [m] is borrowed: it outlives the solver, and whoever changes its values tells gap_changed().
   Solver(const Resources& resources, const Grid& grid, Boundary boundary, const double* gap, bool mixed_precision);
   ~Solver();
 
@@ -45,11 +45,16 @@ class Solver {
   /// Pressure [E*] of every node.
   const Buffer<double>& pressure() const { return p_; }
 
-  /// Gap of the deformed surfaces before the approach is taken off, both measured from first_touch, in units of dx:
-  /// first_touch + dx·deformed_gap + slope_x·x + slope_y·y − approach is what is open between them.
+  /// Gap of the deformed surfaces before the approach is taken off, both measured from origin(), in units of dx:
+  /// origin + dx·deformed_gap + slope_x·x + slope_y·y − approach is what is open between them.
   const Buffer<double>& deformed_gap() const { return g_; }
 
-  double first_touch() const { return first_touch_; }  // [m]
+  double first_touch() const { return first_touch_; }  // of the present gap [m]
+  double origin() const { return origin_; }            // first_touch of the gap it was made with [m]
+
+  /// The values of the gap are others now, say by a residual displacement. The pressure stays, to start from;
+  /// deformed_gap() follows with the next solve() or restore().
+  void gap_changed();
 
   /// What the next solution starts from.
   struct State {
@@ -85,7 +90,7 @@ class Solver {
   Level<Real>& full_level();
   bool start_is_close(const Load& load) const;
   void separate();
-  UndeformedGap undeformed(const double* gap) const { return {gap, scale_, first_touch_}; }
+  UndeformedGap undeformed(const double* gap) const { return {gap, scale_, origin_}; }
 
   Resources resources_;
   Grid grid_;  // unit lengths: dx = 1
@@ -94,6 +99,7 @@ class Solver {
   const double* gap_;
   double scale_;  // metres to unit lengths
   bool mixed_precision_;
+  double origin_ = 0;  // lengths inside are measured from it [m]
   double first_touch_ = 0;
   double mean_gap_ = 0;
   Buffer<double> p_, g_;

@@ -13,7 +13,7 @@ namespace brinell::scene {
 namespace {
 
 constexpr char kMagic[8] = {'B', 'R', 'N', 'R', 'U', 'N', '\0', '\0'};
-constexpr std::uint32_t kVersion = 3;  // of the layout below
+constexpr std::uint32_t kVersion = 4;  // of the layout below
 constexpr std::uint32_t kByteOrder = 0x01020304;
 
 [[noreturn]] void damaged(const std::string& why) {
@@ -83,6 +83,13 @@ void members(I& increment, const Visit& visit) {
   visit(increment.certificate.complementarity);
   visit(increment.certificate.tension);
   visit(increment.certificate.balance);
+  visit(increment.yield);
+  visit(increment.substeps);
+  for (auto& body : increment.plastic) {
+    visit(body.largest);
+    for (auto& value : body.at) visit(value);
+    visit(body.cuboids);
+  }
   visit(increment.wall_seconds);
 }
 
@@ -96,6 +103,69 @@ void trace_members(P& point, const Visit& visit) {
   visit(point.ny);
   visit(point.seconds);
   visit(point.certificate);
+}
+
+template <class S, class Visit>
+void plastic_members(S& state, const Visit& visit) {
+  visit(state.last_was_force);
+  visit(state.last_target);
+  visit(state.last_change);
+  visit(state.total);
+  visit(state.approach);
+}
+
+template <class S, class Visit>
+void body_members(S& state, const Visit& visit) {
+  visit(state.region.i0);
+  visit(state.region.j0);
+  visit(state.region.box.nx);
+  visit(state.region.box.ny);
+  visit(state.region.box.nz);
+}
+
+void put_plastic(Writer& out, const plastic::ElasticPlastic::State& state) {
+  const auto put = [&](const auto& value) { out.put(value); };
+  plastic_members(state, put);
+  for (const auto& body : state.bodies) {
+    if (!body) continue;
+    body_members(*body, put);
+    for (const Buffer<double>* field : {&body->strain, &body->increment, &body->equivalent}) {
+      put(static_cast<std::uint64_t>(field->size()));
+      out.put_bytes(field->data(), field->size() * sizeof(double));
+    }
+  }
+}
+
+plastic::ElasticPlastic::State get_plastic(Reader& in, const Scene& scene) {
+  plastic::ElasticPlastic::State state;
+  const auto get = [&](auto& value) { in.get(value); };
+  plastic_members(state, get);
+  for (const Which which : {Which::lower, Which::upper}) {
+    if (!scene.hardens(which) || (which == Which::upper && scene.identical())) continue;
+    plastic::PlasticBody::State& body = state.bodies[static_cast<std::size_t>(which)].emplace();
+    body_members(body, get);
+    plastic::Box& box = body.region.box;
+    const Grid& grid = scene.grid();
+    const bool fits = body.region.i0 >= 0 && body.region.j0 >= 0 && box.nx >= 0 && box.ny >= 0 && box.nz >= 0 &&
+                      box.nx <= grid.nx - body.region.i0 && box.ny <= grid.ny - body.region.j0 &&
+                      box.nz <= scene.layers().count;
+    if (!fits) damaged("its plastic strain lies outside the scene");
+    if (!body.region.empty()) {
+      box.dx = grid.dx;
+      box.dy = grid.dy;
+      box.dz = scene.layers().thickness;
+    }
+    const std::size_t stride = plastic::PlasticBody::stride_of(box);
+    for (auto [field, size] : {std::pair{&body.strain, 6 * stride}, std::pair{&body.increment, 6 * stride},
+                               std::pair{&body.equivalent, stride}}) {
+      std::uint64_t count = 0;
+      in.get(count);
+      if (count != size || count > in.left() / sizeof(double)) damaged("its plastic strain is not that of its box");
+      *field = Buffer<double>::uninitialised(count);
+      in.get_bytes(field->data(), count * sizeof(double));
+    }
+  }
+  return state;
 }
 
 std::uint64_t checksum(std::span<const std::byte> bytes) {
@@ -124,6 +194,7 @@ std::vector<std::byte> Run::save() const {
   put(solving_seconds_);
   for (const double seconds : stage_seconds_) put(seconds);
   if (!increments_.empty()) {
+    if (plastic_ != nullptr) put_plastic(out, plastic_->state());
     const contact::Solver::State state = solver_->state();
     put(state.total);
     put(state.approach);
@@ -176,6 +247,9 @@ std::unique_ptr<Run> Run::load(Engine& engine, const Scene& scene, std::span<con
   for (double& seconds : run->stage_seconds_) get(seconds);
   if (run->increments_.empty()) return run;
 
+  run->prepare();
+  plastic::ElasticPlastic::State plastic;
+  if (run->plastic_ != nullptr) plastic = get_plastic(in, scene);
   contact::Solver::State state;
   get(state.total);
   get(state.approach);
@@ -185,8 +259,12 @@ std::unique_ptr<Run> Run::load(Engine& engine, const Scene& scene, std::span<con
   if (count != (state.total > 0 ? scene.grid().nodes() : 0)) damaged("its grid is not the scene's");
   state.pressure = Buffer<double>::uninitialised(count);
   in.get_bytes(state.pressure.data(), count * sizeof(double));
-  run->prepare();
-  run->solver_->restore(state);
+  if (run->plastic_ == nullptr) {
+    run->solver_->restore(state);
+  } else {
+    plastic.contact = std::move(state);
+    run->plastic_->restore(plastic);
+  }
   return run;
 }
 

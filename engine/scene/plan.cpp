@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "contact/solver.h"
+#include "plastic/elastic_plastic.h"
 #include "scene/load_history.h"
 #include "scene/stress_stage.h"
 
@@ -36,6 +37,34 @@ Plan::Plan(Engine& engine, const Scene& scene) {
   if (total_increments(scene.steps()) > 1) items.push_back({"contact", "last solved pressure, to go back to", field});
   for (const PlanItem& item : items) memory_bytes += item.bytes;
   refuse_beyond(engine.memory_limit(), static_cast<double>(memory_bytes), grid, "");
+
+  if (scene.hardens()) {
+    const fft::Backend backend = engine.resources().backend;
+    const auto of_body = [&](std::size_t limit) {
+      return plastic::PlasticBody::bytes(backend, grid, scene.layers(), limit);
+    };
+    std::vector<const char*> bodies;
+    for (const Which which : {Which::lower, Which::upper}) {
+      if (!scene.hardens(which) || (which == Which::upper && scene.identical())) continue;
+      bodies.push_back(which == Which::upper ? "the upper body"
+                       : scene.identical()   ? "both bodies"
+                                             : "the lower body");
+    }
+    const std::size_t unknowns = bodies.size() * 6 * grid.nodes() * static_cast<std::size_t>(scene.layers().count);
+    items.push_back({"plastic", "gap with the residual displacement", field});
+    items.push_back(
+        {"plastic", "acceleration, if all cuboids flow", plastic::ElasticPlastic::acceleration_bytes(unknowns)});
+    const std::uint64_t fixed = memory_bytes + items[items.size() - 2].bytes + items.back().bytes;
+    const std::uint64_t smallest = fixed + bodies.size() * of_body(0);
+    refuse_beyond(engine.memory_limit(), static_cast<double>(smallest), grid, "");
+    plastic_spectra_limit = std::min(engine.cache_limit(), engine.memory_limit() - smallest) / (2 * bodies.size());
+    for (const char* body : bodies) {
+      items.push_back({"plastic", "cuboids of " + std::string(body) + ", if the box takes all layers and nodes",
+                       of_body(plastic_spectra_limit)});
+    }
+    memory_bytes = 0;
+    for (const PlanItem& item : items) memory_bytes += item.bytes;
+  }
 
   std::uint64_t least = memory_bytes;
   for (const StressStagePart& part : StressStage::parts(engine, scene, 0)) least += part.bytes;

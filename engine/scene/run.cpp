@@ -42,9 +42,10 @@ const char* name(Stage stage) {
   switch (stage) {
     case Stage::surface: return "surface";
     case Stage::contact: return "contact";
-    case Stage::stress: break;
+    case Stage::stress: return "stress";
+    case Stage::plastic: break;
   }
-  return "stress";
+  return "plastic";
 }
 
 Run::Run(Engine& engine, const Scene& scene)
@@ -52,7 +53,7 @@ Run::Run(Engine& engine, const Scene& scene)
       scene_((scene.check_complete(), scene)),
       plan_(engine, scene),
       contact_modulus_(scene.contact_modulus()) {
-  if (scene_.subsurface().depths.empty()) return;
+  if (!scene_.subsurface().wants(Which::lower) && !scene_.subsurface().wants(Which::upper)) return;
   stress_ = std::make_unique<StressStage>(engine_, scene_, plan_.stress_spectra_limit);
 }
 
@@ -81,12 +82,60 @@ void Run::prepare() {
   gap_ = std::move(gap);
   stage_seconds_[static_cast<int>(Stage::surface)] += seconds_since(start);
   start = Clock::now();
-  solver_ = std::make_unique<contact::Solver>(engine_.resources(), grid, scene_.boundary(), gap_.data(),
+  const double* present = gap_.data();
+  if (scene_.hardens()) {
+    present_gap_ = Buffer<double>::uninitialised(grid.nodes());
+    std::copy(gap_.begin(), gap_.end(), present_gap_.begin());
+    present = present_gap_.data();
+  }
+  solver_ = std::make_unique<contact::Solver>(engine_.resources(), grid, scene_.boundary(), present,
                                               scene_.solver().mixed_precision);
   stage_seconds_[static_cast<int>(Stage::contact)] += seconds_since(start);
+  if (scene_.hardens()) {
+    plastic::Pair pair;
+    pair.identical = scene_.identical();
+    for (const Which which : {Which::lower, Which::upper}) {
+      if (!scene_.hardens(which) || (which == Which::upper && pair.identical)) continue;
+      const Body& body = scene_.body(which);
+      pair.material[static_cast<std::size_t>(which)] =
+          plastic::PlasticMaterial{body.youngs_modulus, body.poissons_ratio, *scene_.hardening(which)};
+    }
+    const SolverSettings& settings = scene_.solver();
+    plastic_ = std::make_unique<plastic::ElasticPlastic>(
+        engine_.resources(), grid, gap_.data(), present_gap_.data(), *solver_, pair,
+        plastic::PairSettings{contact_modulus_, scene_.layers(), settings.tolerance, settings.max_iterations,
+                              plan_.plastic_spectra_limit});
+    plastic_fields_ = std::make_unique<PlasticFields>(engine_, scene_, *plastic_);
+  }
   if (increments_.empty()) {
     step_origin_ = {0, std::min(0.0, solver_->first_touch())};
   }
+}
+
+/// What concerns plastic strain goes into the increment.
+contact::Solution Run::solve(const contact::Load& load, contact::Observer observer, Increment& increment) {
+  if (plastic_ == nullptr) {
+    contact::Solution solution =
+        solver_->solve(load, scene_.solver().tolerance, scene_.solver().max_iterations, observer);
+    increment.converged = solution.converged;
+    return solution;
+  }
+  const plastic::PlasticSolution solution = plastic_->advance(load, observer);
+  plastic_fields_->forget();
+  increment.converged = solution.converged;
+  increment.yield = solution.yield;
+  increment.substeps = solution.substeps;
+  for (const Which which : {Which::lower, Which::upper}) {
+    if (!scene_.hardens(which)) continue;
+    const auto largest = plastic_->body(scene_.identical() ? 0 : static_cast<int>(which))->largest();
+    PlasticExtreme& extreme = increment.plastic[static_cast<int>(which)];
+    extreme.largest = largest.value;
+    extreme.cuboids = largest.cuboids;
+    if (largest.cuboids > 0) std::copy(largest.at.begin(), largest.at.end(), extreme.at);
+  }
+  stage_seconds_[static_cast<int>(Stage::plastic)] += solution.plastic_seconds;
+  stage_seconds_[static_cast<int>(Stage::contact)] -= solution.plastic_seconds;
+  return solution.contact;
 }
 
 const Increment& Run::advance(const Proceed& proceed) {
@@ -108,23 +157,31 @@ const Increment& Run::advance(const Proceed& proceed) {
                                step_origin_, scene_.grid());
   if (load.drive == contact::Drive::force) load.target /= contact_modulus_ * scene_.grid().cell_area();
 
-  const contact::Solver::State before = solver_->state();
+  const contact::Solver::State before = plastic_ == nullptr ? solver_->state() : contact::Solver::State{};
   const std::size_t traced = trace_.size();
+  const bool certifies = plastic_ == nullptr;  // else the contact alone is one of many within the increment
   const auto observe = [&](const contact::Report& report) {
     const double seconds = seconds_since(start);
-    trace_.push_back({position, report.iteration, report.certified ? 1 : 0, report.grid.nx, report.grid.ny,
-                      solving_seconds_ + seconds, report.certificate});
+    trace_.push_back({position, report.iteration, certifies && report.certified ? 1 : 0, report.grid.nx,
+                      report.grid.ny, solving_seconds_ + seconds, report.certificate});
     return !proceed || proceed({position, solved, total(), report.iteration, report.certificate, seconds});
   };
+  Increment increment;
+  increment.position = position;
   contact::Solution solution;
   try {
-    solution = solver_->solve(load, scene_.solver().tolerance, scene_.solver().max_iterations, observe);
+    solution = solve(load, observe, increment);
   } catch (...) {
     trace_.resize(traced);
-    solver_->restore(before);
+    if (plastic_ == nullptr) solver_->restore(before);
     throw;
   }
-  increments_.push_back(summary(solution, position));
+  summarise(solution, increment);
+  if (plastic_ != nullptr) {
+    trace_.push_back({position, increment.iterations, 1, scene_.grid().nx, scene_.grid().ny,
+                      solving_seconds_ + seconds_since(start), increment.worst()});
+  }
+  increments_.push_back(increment);
 
   const double seconds = seconds_since(start);
   increments_.back().wall_seconds = seconds;
@@ -143,12 +200,13 @@ void Run::compute_stress(const Proceed& proceed) {
   const auto start = Clock::now();
   Increment& increment = increments_.back();
   const auto go_on = [&] {
-    return !proceed || proceed({increment.position, static_cast<std::int32_t>(increments_.size()) - 1, total(),
-                                increment.iterations, increment.certificate.worst(),
-                                increment.wall_seconds + seconds_since(start)});
+    return !proceed ||
+           proceed({increment.position, static_cast<std::int32_t>(increments_.size()) - 1, total(),
+                    increment.iterations, increment.worst(), increment.wall_seconds + seconds_since(start)});
   };
   const auto largest = stress_->compute(solver_->pressure().data(), contact_modulus_,
-                                        scene_.steps()[static_cast<std::size_t>(increment.position.step)], go_on);
+                                        scene_.steps()[static_cast<std::size_t>(increment.position.step)], go_on,
+                                        plastic_fields_.get());
   std::copy(largest.begin(), largest.end(), increment.max_von_mises);
   const double seconds = seconds_since(start);
   stage_seconds_[static_cast<int>(Stage::stress)] += seconds;
@@ -158,7 +216,7 @@ void Run::compute_stress(const Proceed& proceed) {
   solving_seconds_ += seconds;
 }
 
-Increment Run::summary(const contact::Solution& solution, const Position& position) {
+void Run::summarise(const contact::Solution& solution, Increment& increment) {
   const Grid& grid = scene_.grid();
   const double* p = solver_->pressure().data();
   const double* g = solver_->deformed_gap().data();
@@ -196,9 +254,6 @@ Increment Run::summary(const contact::Solution& solution, const Position& positi
       });
 
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  Increment increment;
-  increment.position = position;
-  increment.converged = solution.converged;
   increment.iterations = solution.iterations;
   increment.convolutions = solution.convolutions;
   increment.contact_nodes = static_cast<std::int64_t>(sums.nodes);
@@ -208,20 +263,25 @@ Increment Run::summary(const contact::Solution& solution, const Position& positi
   increment.tilt[1] = solution.slope_y;
   increment.centre_of_force[0] = sums.force > 0 ? sums.moment_x / sums.force : none;
   increment.centre_of_force[1] = sums.force > 0 ? sums.moment_y / sums.force : none;
-  increment.first_touch = solver_->first_touch();
+  increment.first_touch = solver_->origin();
   increment.contact_area = sums.nodes * grid.cell_area();
   increment.max_pressure = sums.largest * contact_modulus_;
   increment.max_pressure_at[0] = sums.largest_at >= 0 ? grid.x(sums.largest_at % grid.nx) : none;
   increment.max_pressure_at[1] = sums.largest_at >= 0 ? grid.y(sums.largest_at / grid.nx) : none;
   increment.mean_gap =
-      sums.gap / static_cast<double>(grid.nodes()) * grid.dx - (solution.approach - solver_->first_touch());
+      sums.gap / static_cast<double>(grid.nodes()) * grid.dx - (solution.approach - solver_->origin());
   increment.certificate = solution.certificate;
-  return increment;
 }
 
 std::size_t Run::field_size(Field field) const {
   const Grid& grid = scene_.grid();
-  if (!is_below_surface(field)) return grid.nodes();
+  if (field < Field::residual_displacement) return grid.nodes();
+  if (!is_below_surface(field)) {
+    if (!scene_.hardens(body_of(field))) {
+      fail(Status::wrong_state, "there is no field " + name(field) + ": that body does not harden");
+    }
+    return grid.nodes();
+  }
   const std::vector<Field>& asked = scene_.subsurface().fields;
   if (std::find(asked.begin(), asked.end(), field) == asked.end()) {
     fail(Status::wrong_state,
@@ -231,8 +291,8 @@ std::size_t Run::field_size(Field field) const {
 }
 
 void Run::copy_field(Field field, std::span<double> values) {
-  if (is_below_surface(field)) {
-    const Buffer<double>& all = stress_values(field);
+  if (field >= Field::residual_displacement) {
+    const Buffer<double>& all = values_below(field);
     std::copy(all.begin(), all.end(), values.begin());
   } else {
     copy_surface_field(field, values);
@@ -240,14 +300,18 @@ void Run::copy_field(Field field, std::span<double> values) {
 }
 
 void Run::copy_layer(Field field, std::int64_t layer, std::span<double> values) {
-  const double* begin = stress_values(field).data() + static_cast<std::size_t>(layer) * values.size();
+  const double* begin = values_below(field).data() + static_cast<std::size_t>(layer) * values.size();
   std::copy(begin, begin + values.size(), values.begin());
 }
 
-/// A field below the surface, computed now if it is not there: after loading, or where that was cancelled or failed.
-const Buffer<double>& Run::stress_values(Field field) {
+/// A field of one body, computed now if it is not there: after loading, or where that was cancelled or failed.
+const Buffer<double>& Run::values_below(Field field) {
   field_size(field);  // refuses what the scene does not ask for
   if (increments_.empty()) fail(Status::wrong_state, "no increment is solved yet: there is no field");
+  if (is_plastic(field)) {
+    prepare();
+    return plastic_fields_->field(field);
+  }
   if (!stress_->has_fields()) compute_stress({});
   return stress_->field(field);
 }
@@ -264,7 +328,7 @@ void Run::copy_surface_field(Field field, std::span<double> values) {
   const Buffer<double>& g = solver_->deformed_gap();
   const Grid& grid = scene_.grid();
   const double unit = grid.dx;
-  const double first_touch = solver_->first_touch();
+  const double first_touch = solver_->origin();
   const Increment& last = increments_.back();
   const auto plane = [&](std::size_t n) {
     return last.tilt[0] * grid.x(static_cast<std::int64_t>(n) % grid.nx) +

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -13,10 +14,20 @@
 #include "scene/engine.h"
 #include "scene/load_history.h"
 #include "scene/plan.h"
+#include "scene/plastic_fields.h"
 #include "scene/scene.h"
 #include "scene/stress_stage.h"
 
 namespace brinell::scene {
+
+/// The largest equivalent plastic strain of one body and the centre of its cuboid. NaN: the body does not harden; its
+/// place also where nothing has flowed.
+struct PlasticExtreme {
+  double largest = std::numeric_limits<double>::quiet_NaN();
+  double at[3] = {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN(),
+                  std::numeric_limits<double>::quiet_NaN()};  // [m]
+  std::int64_t cuboids = 0;                                   // that have flowed
+};
 
 /// Result of one solved increment. NaN: does not exist.
 struct Increment {
@@ -37,7 +48,13 @@ struct Increment {
   LargestVonMises max_von_mises[2];    // by Which
   bool stress_missing = false;         // computing it was cancelled or failed; advance() or a field makes up for it
   contact::Certificate certificate;
+  double yield = std::numeric_limits<double>::quiet_NaN();  // worst violation of the yield condition / yield stress
+  std::int32_t substeps = 1;                                // parts in which a body that hardens was loaded
+  PlasticExtreme plastic[2];                                // by Which
   double wall_seconds = 0;
+
+  /// The worst entry of the certificate, the yield condition included.
+  double worst() const { return yield > certificate.worst() ? yield : certificate.worst(); }
 };
 
 struct TracePoint {
@@ -57,8 +74,8 @@ struct Progress {
   double seconds = 0;
 };
 
-enum class Stage : std::int32_t { surface = 0, contact = 1, stress = 2 };
-inline constexpr std::int32_t kStages = 3;
+enum class Stage : std::int32_t { surface = 0, contact = 1, stress = 2, plastic = 3 };
+inline constexpr std::int32_t kStages = 4;
 const char* name(Stage stage);
 
 class Run {
@@ -74,7 +91,10 @@ class Run {
   const std::vector<Increment>& increments() const { return increments_; }
   const std::vector<TracePoint>& trace() const { return trace_; }
   double stage_seconds(Stage stage) const { return stage_seconds_[static_cast<int>(stage)]; }
-  bool has_stage(Stage stage) const { return stage != Stage::stress || stress_ != nullptr; }
+  bool has_stage(Stage stage) const {
+    if (stage == Stage::plastic) return scene_.hardens();
+    return stage != Stage::stress || stress_ != nullptr;
+  }
 
   /// Solves the next increment and returns it, converged or not. Returns false from `proceed` to cancel: throws
   /// Status::cancelled and the state is that after the last solved increment. Once its contact is solved an increment
@@ -103,18 +123,22 @@ class Run {
   using Clock = std::chrono::steady_clock;
 
   void prepare();
+  contact::Solution solve(const contact::Load& load, contact::Observer observer, Increment& increment);
   void compute_stress(const Proceed& proceed);
   void copy_surface_field(Field field, std::span<double> values);
-  const Buffer<double>& stress_values(Field field);
-  Increment summary(const contact::Solution& solution, const Position& position);
+  const Buffer<double>& values_below(Field field);
+  void summarise(const contact::Solution& solution, Increment& increment);
 
   Engine& engine_;
   Scene scene_;
   Plan plan_;
   double contact_modulus_;
-  Buffer<double> gap_;  // [m], empty until the first increment
+  Buffer<double> gap_;          // [m], empty until the first increment
+  Buffer<double> present_gap_;  // with what plastic strain adds; empty: nothing hardens
   std::unique_ptr<contact::Solver> solver_;
-  std::unique_ptr<StressStage> stress_;  // null: the scene asks for none
+  std::unique_ptr<StressStage> stress_;               // null: the scene asks for none
+  std::unique_ptr<plastic::ElasticPlastic> plastic_;  // these two null: nothing hardens
+  std::unique_ptr<PlasticFields> plastic_fields_;
 
   // What the next increment starts from:
   Origin step_origin_;  // of the step under way

@@ -67,6 +67,36 @@ void add_members(Fingerprint& f, const surface::Roughness& r) {
     f.add(value);
   f.add(r.seed);
 }
+void add_members(Fingerprint& f, const plastic::Swift& l) {
+  for (const double value : {l.B, l.C, l.n, l.strain_scale}) f.add(value);
+}
+void add_members(Fingerprint& f, const plastic::LinearHardening& l) {
+  f.add(l.yield_stress);
+  f.add(l.hardening_modulus);
+}
+void add_members(Fingerprint& f, const plastic::PerfectPlasticity& l) {
+  f.add(l.yield_stress);
+}
+void add_members(Fingerprint& f, const plastic::Voce& l) {
+  for (const double value : {l.yield_stress, l.saturation_stress, l.rate}) f.add(value);
+}
+void add_members(Fingerprint& f, const plastic::RambergOsgood& l) {
+  for (const double value : {l.K, l.m, l.yield_stress}) f.add(value);
+}
+void add_members(Fingerprint& f, const plastic::HardeningTable& l) {
+  for (const double value : l.plastic_strain) f.add(value);
+  for (const double value : l.stress) f.add(value);
+}
+void add_members(Fingerprint& f, const plastic::Hardening& hardening, const Body& body) {
+  f.add(body.youngs_modulus);
+  f.add(body.poissons_ratio);
+  f.add(hardening.law.index());
+  std::visit([&](const auto& law) { add_members(f, law); }, hardening.law);
+  for (const plastic::DepthFactor& one : hardening.depth_factor) {
+    f.add(one.depth);
+    f.add(one.factor);
+  }
+}
 void add_members(Fingerprint& f, const Heights& h) {
   f.add(static_cast<std::int32_t>(h.detrend));
   f.add_bytes(h.values->data(), h.values->size() * sizeof(double));
@@ -75,14 +105,15 @@ void add_members(Fingerprint& f, const Heights& h) {
 }  // namespace
 
 bool Subsurface::wants(Which body) const {
-  return max_von_mises[static_cast<int>(body)] ||
-         std::any_of(fields.begin(), fields.end(), [&](Field field) { return body_of(field) == body; });
+  return max_von_mises[static_cast<int>(body)] || std::any_of(fields.begin(), fields.end(), [&](Field field) {
+           return is_stress(field) && body_of(field) == body;
+         });
 }
 
 bool Subsurface::wants_max_von_mises(Which body) const {
   return max_von_mises[static_cast<int>(body)] || std::any_of(fields.begin(), fields.end(), [&](Field field) {
            return body_of(field) == body &&
-                  (is_stress(field) || invariant_of(field) == subsurface::Invariant::von_mises);
+                  (lower_field(field) == Field::stress || invariant_of(field) == subsurface::Invariant::von_mises);
          });
 }
 
@@ -122,6 +153,22 @@ void Scene::set_body(Which which, const Body& body) {
             "poissons_ratio = " + text(body.poissons_ratio) + ": must lie between -1 and 0.5, both excluded");
   }
   bodies_[static_cast<int>(which)] = body;
+}
+
+void Scene::set_hardening(Which which, const std::optional<plastic::Hardening>& hardening) {
+  require(which == Which::lower || which == Which::upper, Status::invalid_argument,
+          "body = " + std::to_string(static_cast<std::int32_t>(which)) + ": allowed are 0 (lower) and 1 (upper)");
+  if (hardening) plastic::check(*hardening);
+  hardening_[static_cast<int>(which)] = hardening;
+}
+
+void Scene::set_identical(bool identical) {
+  identical_ = identical;
+}
+
+void Scene::set_layers(const plastic::Layers& layers) {
+  subsurface::layer_depths(layers.count, layers.thickness);  // refuses what is out of range
+  layers_ = layers;
 }
 
 void Scene::add(const surface::Shape& shape) {
@@ -193,15 +240,17 @@ void Scene::set_subsurface(const Subsurface& wanted) {
     require(is_below_surface(field), Status::invalid_argument,
             "fields: " + name(field) + " lies on the surface and is always there; name fields below it");
   }
-  require(wanted.wants(Which::lower) || wanted.wants(Which::upper), Status::invalid_argument,
+  require(wanted.wants(Which::lower) || wanted.wants(Which::upper) || !wanted.fields.empty(),
+          Status::invalid_argument,
           "nothing is asked for below the surface: name fields, or set max_von_mises or upper_max_von_mises");
   subsurface_ = wanted;
 }
 
 double Scene::contact_modulus() const {
   double compliance = 0;
-  for (const Body& body : bodies_) {
-    if (!body.rigid) compliance += (1 - body.poissons_ratio * body.poissons_ratio) / body.youngs_modulus;
+  for (const Which which : {Which::lower, Which::upper}) {
+    const Body& one = body(which);
+    if (!one.rigid) compliance += (1 - one.poissons_ratio * one.poissons_ratio) / one.youngs_modulus;
   }
   require(compliance > 0, Status::invalid_scene,
           "both bodies are rigid: give at least one of them youngs_modulus and poissons_ratio");
@@ -218,11 +267,40 @@ void Scene::check_complete() const {
         "step " + std::to_string(n) + ": mean_pressure needs a periodic boundary; prescribe normal_force instead");
     check_rotation(n);
   }
+  check_hardening();
   for (const Which which : {Which::lower, Which::upper}) {
     const std::string label = which == Which::lower ? "lower" : "upper";
     require(!subsurface_.wants(which) || !body(which).rigid, Status::invalid_scene,
             "the stress below the " + label + " body's surface is asked for, but that body is rigid: give it " +
                 "youngs_modulus and poissons_ratio, or ask for the other body's");
+  }
+}
+
+void Scene::check_hardening() const {
+  for (const Field field : subsurface_.fields) {
+    require(!is_plastic(field) || hardens(body_of(field)), Status::invalid_scene,
+            "the field " + name(field) + " is asked for, but that body does not harden: give it a hardening law");
+  }
+  if (!hardens()) return;
+  for (const Which which : {Which::lower, Which::upper}) {
+    require(!hardens(which) || !body(which).rigid, Status::invalid_scene,
+            std::string("the ") + (which == Which::lower ? "lower" : "upper") +
+                " body hardens, but is rigid: give it youngs_modulus and poissons_ratio");
+  }
+  require(boundary_ == Boundary::free, Status::invalid_scene,
+          "a body that hardens needs a free boundary: the response to plastic strain is that of a half-space");
+  require(layers_.count > 0, Status::invalid_scene,
+          "a body that hardens is divided into layers: set their number and thickness");
+  require(
+      subsurface_.depths.empty() || subsurface_.depths == subsurface::layer_depths(layers_.count, layers_.thickness),
+      Status::invalid_scene,
+      "beside a body that hardens the depths asked for must be those of its layers, (k + 1/2) times " +
+          text(layers_.thickness) + " m for " + std::to_string(layers_.count) + " layers");
+  for (std::size_t n = 0; n < steps_.size(); ++n) {
+    require(steps_[n].traction_ratio[0] == 0 && steps_[n].traction_ratio[1] == 0, Status::invalid_scene,
+            "step " + std::to_string(n) +
+                ": traction_ratio beside a body that hardens: yielding under shear is not covered; leave one of them "
+                "out");
   }
 }
 
@@ -272,6 +350,12 @@ std::uint64_t Scene::fingerprint() const {
   for (const Which which : {Which::lower, Which::upper}) {
     f.add(subsurface_.max_von_mises[static_cast<int>(which)]);
     if (subsurface_.wants(which)) f.add(body(which).poissons_ratio);
+    if (hardens(which)) add_members(f, *hardening(which), body(which));
+  }
+  if (hardens()) {
+    f.add(identical_);
+    f.add(layers_.count);
+    f.add(layers_.thickness);
   }
   return f.value();
 }

@@ -4,11 +4,14 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <variant>
 #include <vector>
 
 #include "base/buffer.h"
 #include "base/grid.h"
+#include "plastic/hardening.h"
+#include "plastic/plastic_body.h"
 #include "scene/field.h"
 #include "surface/height_map.h"
 #include "surface/roughness.h"
@@ -54,6 +57,7 @@ struct Subsurface {
   std::vector<Field> fields;               // below the surface, of either body
   bool max_von_mises[2] = {false, false};  // by Which: the largest value and its place, without a field
 
+  /// The stress of this body, or what follows from it.
   bool wants(Which body) const;
 
   /// Asked for, or a by-product: whoever wants the stress or the von Mises field gets it too.
@@ -64,6 +68,11 @@ class Scene {
  public:
   void set_grid(const Grid& grid, Boundary boundary);
   void set_body(Which which, const Body& body);
+  void set_hardening(Which which, const std::optional<plastic::Hardening>& hardening);
+  /// The upper body is the mirror image of the lower one, whatever it was set to.
+  void set_identical(bool identical);
+  /// In which a body that hardens is divided.
+  void set_layers(const plastic::Layers& layers);
   void add(const surface::Shape& shape);
   void add(const surface::Roughness& roughness);
   void add(const surface::HeightMap& heights, surface::Detrend detrend);
@@ -76,7 +85,14 @@ class Scene {
   const std::vector<SurfaceEntry>& surfaces() const { return surfaces_; }
   const std::vector<Step>& steps() const { return steps_; }
   const SolverSettings& solver() const { return solver_; }
-  const Body& body(Which which) const { return bodies_[static_cast<int>(which)]; }
+  const Body& body(Which which) const { return bodies_[identical_ ? 0 : static_cast<int>(which)]; }
+  bool identical() const { return identical_; }
+  bool hardens(Which which) const { return hardening(which).has_value(); }
+  bool hardens() const { return hardens(Which::lower) || hardens(Which::upper); }
+  const std::optional<plastic::Hardening>& hardening(Which which) const {
+    return hardening_[identical_ ? 0 : static_cast<int>(which)];
+  }
+  const plastic::Layers& layers() const { return layers_; }
   const Subsurface& subsurface() const { return subsurface_; }
 
   /// 1/E* = (1−ν₁²)/E₁ + (1−ν₂²)/E₂ [Pa]. Throws Status::invalid_scene if both bodies are rigid.
@@ -90,10 +106,14 @@ class Scene {
 
  private:
   void check_rotation(std::size_t n) const;
+  void check_hardening() const;
 
   Grid grid_;
   Boundary boundary_ = Boundary::free;
   Body bodies_[2];
+  std::optional<plastic::Hardening> hardening_[2];
+  bool identical_ = false;
+  plastic::Layers layers_;
   std::vector<SurfaceEntry> surfaces_;
   std::vector<Step> steps_;
   SolverSettings solver_;

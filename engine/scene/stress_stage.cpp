@@ -33,16 +33,27 @@ subsurface::StressRequest request_for(const Scene& scene, Which body, subsurface
   request.depths = wanted.depths;
   request.sources = sources;
   for (const Field field : wanted.fields) {
-    if (body_of(field) != body) continue;
+    if (!is_stress(field) || body_of(field) != body) continue;
     if (const auto invariant = invariant_of(field)) {
       request.invariants.add(*invariant);
-    } else if (is_stress(field)) {
+    } else if (lower_field(field) == Field::stress) {
       request.components = subsurface::kAllComponents;
     } else {
       request.directions = true;
     }
   }
   if (wanted.wants_max_von_mises(body)) request.maxima.add(subsurface::Invariant::von_mises);
+  return request;
+}
+
+/// The contact's part alone of a body that hardens; the rest follows from the total.
+subsurface::StressRequest contact_request_for(const Scene& scene, Which body, subsurface::Sources sources) {
+  subsurface::StressRequest request = request_for(scene, body, sources);
+  if (!scene.hardens(body)) return request;
+  request.components = subsurface::kAllComponents;
+  request.invariants = {};
+  request.directions = false;
+  request.maxima = {};
   return request;
 }
 
@@ -62,6 +73,7 @@ std::vector<StressStagePart> StressStage::parts(Engine& engine, const Scene& sce
   const Subsurface& wanted = scene.subsurface();
   std::vector<StressStagePart> parts;
   for (const Field field : wanted.fields) {
+    if (!is_stress(field)) continue;
     parts.push_back({"field " + name(field) + " on " + std::to_string(wanted.depths.size()) + " layers",
                      Buffer<double>::padded_bytes(field_values(scene, field))});
   }
@@ -75,7 +87,7 @@ std::vector<StressStagePart> StressStage::parts(Engine& engine, const Scene& sce
       if (std::find(seen.begin(), seen.end(), sources_of(step)) != seen.end()) continue;
       seen.push_back(sources_of(step));
       const auto plan = subsurface::plan_stress(engine.resources().backend,
-                                                request_for(scene, body, sources_of(step)), spectra_limit);
+                                                contact_request_for(scene, body, sources_of(step)), spectra_limit);
       kept = std::max(kept, plan.kept_bytes);
       work = std::max(work, plan.work_bytes);
       shears = std::max<std::size_t>(shears, (step.traction_ratio[0] != 0 ? 1 : 0) + (step.traction_ratio[1] != 0));
@@ -83,6 +95,9 @@ std::vector<StressStagePart> StressStage::parts(Engine& engine, const Scene& sce
     const std::string of_body = body == Which::lower ? " of the lower body" : " of the upper body";
     if (kept > 0) parts.push_back({"coefficients kept for the next increment" + of_body, kept});
     parts.push_back({"transforms, layers under way" + of_body, work});
+    if (scene.hardens(body)) {
+      parts.push_back({"total and residual stress" + of_body, PlasticFields::bytes(engine, scene)});
+    }
   }
   if (!parts.empty()) parts.push_back({shears > 0 ? "pressure and shear" : "pressure", (1 + shears) * surface_field});
   return parts;
@@ -93,14 +108,14 @@ subsurface::StressField& StressStage::stress_field(Which body, subsurface::Sourc
   if (one.field == nullptr || !(one.sources == sources)) {
     one.field.reset();  // before the next takes its memory
     one.field = std::make_unique<subsurface::StressField>(engine_.resources().backend,
-                                                          request_for(scene_, body, sources), spectra_limit_);
+                                                          contact_request_for(scene_, body, sources), spectra_limit_);
     one.sources = sources;
   }
   return *one.field;
 }
 
 std::array<LargestVonMises, 2> StressStage::compute(const double* pressure, double unit, const Step& step,
-                                                    FunctionRef<bool()> proceed) {
+                                                    FunctionRef<bool()> proceed, PlasticFields* plastic) {
   has_fields_ = false;
   const std::size_t nodes = scene_.grid().nodes();
   std::array<Buffer<double>, subsurface::kTractions> tractions;
@@ -114,6 +129,7 @@ std::array<LargestVonMises, 2> StressStage::compute(const double* pressure, doub
     if (step.traction_ratio[axis] != 0) tractions[1 + axis] = scaled(step.traction_ratio[axis] * unit);
   }
   for (const Field field : scene_.subsurface().fields) {
+    if (!is_stress(field)) continue;
     Buffer<double>& values = fields_[field];
     if (values.empty()) values = Buffer<double>::uninitialised(field_values(scene_, field));
   }
@@ -125,9 +141,11 @@ std::array<LargestVonMises, 2> StressStage::compute(const double* pressure, doub
       keep(body, layer);
       if (!proceed()) fail(Status::cancelled, "the progress callback asked to stop");
     };
-    const subsurface::Maxima maxima =
-        stress_field(body, sources_of(step))
-            .compute_by_layer({tractions[0].data(), tractions[1].data(), tractions[2].data()}, take);
+    const subsurface::Tractions given{tractions[0].data(), tractions[1].data(), tractions[2].data()};
+    subsurface::StressField& contact = stress_field(body, sources_of(step));
+    const subsurface::Maxima maxima = plastic != nullptr && scene_.hardens(body)
+                                          ? compute_total(body, contact, given, *plastic, take)
+                                          : contact.compute_by_layer(given, take);
     if (scene_.subsurface().wants_max_von_mises(body)) {
       result[static_cast<std::size_t>(body)] =
           largest(maxima[static_cast<std::size_t>(subsurface::Invariant::von_mises)]);
@@ -135,6 +153,58 @@ std::array<LargestVonMises, 2> StressStage::compute(const double* pressure, doub
   }
   has_fields_ = true;
   return result;
+}
+
+/// Contact and residual stress together, then what the scene asks for, layer by layer.
+subsurface::Maxima StressStage::compute_total(Which body, subsurface::StressField& contact,
+                                              const subsurface::Tractions& tractions, PlasticFields& plastic,
+                                              FunctionRef<void(const subsurface::StressLayer&)> take) {
+  const subsurface::StressRequest wanted = request_for(scene_, body, {subsurface::Traction::pressure});
+  const std::size_t nodes = scene_.grid().nodes(), all = nodes * wanted.depths.size();
+  auto stress = Buffer<double>::uninitialised(6 * all);
+  subsurface::StressFields fields;
+  for (std::size_t c = 0; c < 6; ++c) fields.component[c] = stress.data() + c * all;
+  contact.compute(tractions, fields);
+  const Buffer<double>& residual = plastic.residual_stress(body);
+  for (std::size_t n = 0; n < stress.size(); ++n) stress[n] += residual[n];
+
+  const subsurface::Invariants invariants = wanted.invariants | wanted.maxima;
+  std::array<std::array<Buffer<double>, 2>, subsurface::kInvariants> values;  // of this layer and the one before
+  auto directions = Buffer<double>::uninitialised(wanted.directions ? 9 * nodes : 0);
+  std::vector<subsurface::MaximumSearch> search(subsurface::kInvariants,
+                                                {wanted.grid, wanted.boundary, wanted.depths});
+  for (std::size_t layer = 0; layer < wanted.depths.size(); ++layer) {
+    subsurface::StressLayer shown{static_cast<std::int64_t>(layer), wanted.depths[layer], {}, {}, {}};
+    simd::StressArrays tensors;
+    for (std::size_t c = 0; c < 6; ++c) {
+      tensors.component[c] = stress.data() + c * all + layer * nodes;
+      shown.component[c] = tensors.component[c];
+    }
+    subsurface::InvariantArrays result;
+    for (std::size_t k = 0; k < subsurface::kInvariants; ++k) {
+      if (!invariants.has(static_cast<int>(k))) continue;
+      Buffer<double>& of_layer = values[k][layer % 2];
+      if (of_layer.empty()) of_layer = Buffer<double>::uninitialised(nodes);
+      result.invariant[k] = of_layer.data();
+      shown.invariant[k] = of_layer.data();
+    }
+    for (std::size_t k = 0; wanted.directions && k < 9; ++k) {
+      result.direction[k] = directions.data() + k * nodes;
+      shown.direction[k] = result.direction[k];
+    }
+    subsurface::fill_invariants(engine_.kernels(), nodes, tensors, result);
+    for (std::size_t k = 0; k < subsurface::kInvariants; ++k) {
+      if (!wanted.maxima.has(static_cast<int>(k))) continue;
+      search[k].take(result.invariant[k], engine_.kernels().subsurface.largest(nodes, result.invariant[k]),
+                     layer > 0 ? values[k][(layer + 1) % 2].data() : nullptr);
+    }
+    take(shown);
+  }
+  subsurface::Maxima maxima{};
+  for (std::size_t k = 0; k < subsurface::kInvariants; ++k) {
+    if (wanted.maxima.has(static_cast<int>(k))) maxima[k] = search[k].result();
+  }
+  return maxima;
 }
 
 /// Copies a layer of one body into the fields, components of a node side by side.
@@ -153,7 +223,8 @@ void StressStage::keep(Which body, const subsurface::StressLayer& layer) {
         std::copy(source + begin, source + end, target + begin);
         return;
       }
-      const double* const* sources = is_stress(field) ? layer.component.data() : layer.direction.data();
+      const double* const* sources =
+          lower_field(field) == Field::stress ? layer.component.data() : layer.direction.data();
       for (std::int64_t n = begin; n < end; ++n) {
         for (std::int64_t c = 0; c < width; ++c) target[n * width + c] = sources[c][n];
       }

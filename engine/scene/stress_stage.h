@@ -17,6 +17,7 @@
 #include "base/function_ref.h"
 #include "scene/engine.h"
 #include "scene/field.h"
+#include "scene/plastic_fields.h"
 #include "scene/scene.h"
 #include "subsurface/stress_field.h"
 
@@ -44,9 +45,10 @@ class StressStage {
   static std::vector<StressStagePart> parts(Engine& engine, const Scene& scene, std::size_t spectra_limit);
 
   /// Pressure in units of `unit` [Pa]. Calls proceed() after each layer; throws Status::cancelled if it returns
-  /// false. What was there before is lost then.
+  /// false. What was there before is lost then. plastic: of a scene with a body that hardens, whose stress is then
+  /// the total one; else null.
   std::array<LargestVonMises, 2> compute(const double* pressure, double unit, const Step& step,
-                                         FunctionRef<bool()> proceed);
+                                         FunctionRef<bool()> proceed, PlasticFields* plastic);
 
   /// Whether there are fields of the last compute() that went to its end.
   bool has_fields() const { return has_fields_; }
@@ -61,6 +63,9 @@ class StressStage {
   };
 
   subsurface::StressField& stress_field(Which body, subsurface::Sources sources);
+  subsurface::Maxima compute_total(Which body, subsurface::StressField& contact,
+                                   const subsurface::Tractions& tractions, PlasticFields& plastic,
+                                   FunctionRef<void(const subsurface::StressLayer&)> take);
   void keep(Which body, const subsurface::StressLayer& layer);
 
   Engine& engine_;

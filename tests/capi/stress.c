@@ -448,7 +448,7 @@ static void bad_requests_of_scenes_are_refused(void) {
   CHECK_STATUS(BRN_INVALID_ARGUMENT, brn_scene_set_subsurface(scene, NULL));
   refused(scene, &wanted, "fields[1] = 1");
   wanted = equal_layers(unknown, 1);
-  refused(scene, &wanted, "fields[0] = 28|27|127");
+  refused(scene, &wanted, "fields[0] = 28|27|32|100");
   wanted = equal_layers(NULL, 1);
   refused(scene, &wanted, "fields is NULL");
   wanted = equal_layers(NULL, 0);

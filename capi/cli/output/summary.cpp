@@ -45,6 +45,12 @@ Json number_json(double value) {
   return value;
 }
 
+/// Null where the body does not harden, so that its largest plastic strain is no number.
+Json count_json(std::int64_t count, double largest) {
+  if (largest != largest) return nullptr;
+  return count;
+}
+
 Json increment_json(const brn_increment& increment) {
   return {{"step", increment.step},
           {"increment", increment.increment},
@@ -63,9 +69,14 @@ Json increment_json(const brn_increment& increment) {
           {"max_von_mises_at", place_json(increment.max_von_mises_at)},
           {"upper_max_von_mises", number_json(increment.upper_max_von_mises)},
           {"upper_max_von_mises_at", place_json(increment.upper_max_von_mises_at)},
-          {"max_equivalent_plastic_strain", nullptr},
-          {"max_equivalent_plastic_strain_at", nullptr},
-          {"plastic_nodes", nullptr},
+          {"max_equivalent_plastic_strain", number_json(increment.max_equivalent_plastic_strain)},
+          {"max_equivalent_plastic_strain_at", place_json(increment.max_equivalent_plastic_strain_at)},
+          {"plastic_nodes", count_json(increment.plastic_nodes, increment.max_equivalent_plastic_strain)},
+          {"upper_max_equivalent_plastic_strain", number_json(increment.upper_max_equivalent_plastic_strain)},
+          {"upper_max_equivalent_plastic_strain_at", place_json(increment.upper_max_equivalent_plastic_strain_at)},
+          {"upper_plastic_nodes",
+           count_json(increment.upper_plastic_nodes, increment.upper_max_equivalent_plastic_strain)},
+          {"substeps", increment.substeps},
           {"iterations", increment.iterations},
           {"convolutions", increment.convolutions},
           {"certificate",
@@ -73,7 +84,7 @@ Json increment_json(const brn_increment& increment) {
             {"complementarity", increment.complementarity},
             {"tension", increment.tension},
             {"balance", increment.balance},
-            {"yield", nullptr}}},
+            {"yield", number_json(increment.yield)}}},
           {"wall_seconds", increment.wall_seconds}};
 }
 
@@ -94,6 +105,11 @@ std::string counted(std::size_t count, const std::string& noun) {
 std::string padded(std::string text, std::size_t width) {
   if (text.size() < width) text.resize(width, ' ');
   return text;
+}
+
+double worst_of(const brn_increment& i) {
+  const double contact = std::max({i.penetration, i.complementarity, i.tension, i.balance});
+  return i.yield > contact ? i.yield : contact;  // yield is no number where nothing hardens
 }
 
 std::string von_mises_text(double value) {
@@ -169,7 +185,7 @@ std::string summary_table(brn_run* run) {
   text += below ? "von Mises    upper [Pa]   iterations  certificate\n" : "iterations  certificate\n";
   for (int k = 0; k < brn_run_solved_increments(run); ++k) {
     const brn_increment i = increment_of(run, k);
-    const double worst = std::max({i.penetration, i.complementarity, i.tension, i.balance});
+    const double worst = worst_of(i);
     std::array<char, 160> line{};
     std::snprintf(line.data(), line.size(), "%4d  %9d  %-11.5g  %-12.5g  %-11.5g  %-11.5g  ", i.step, i.increment,
                   i.normal_force, i.approach, i.contact_area, i.max_pressure);

@@ -1,0 +1,228 @@
+#include "plastic/elastic_plastic.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "base/error.h"
+
+namespace brinell::plastic {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+constexpr std::size_t kDepth = 6;  // of the acceleration
+constexpr std::int32_t kIterations = 80;
+constexpr int kHalvings = 6;
+// The contact of an iteration is solved to this fraction of the error in the yield condition: with 0.02 its error
+// costs a quarter more iterations, with 0.1 it keeps them from converging. Not beyond this fraction of the tolerance,
+// nor of what doubles hold.
+constexpr double kContactToYield = 1e-3;
+constexpr double kContactToTolerance = 0.01;
+constexpr double kLeastContact = 1e-13;
+constexpr double kFirstContact = 1e-5;
+// The increment of plastic strain is extrapolated with a load increment up to so many times larger.
+constexpr double kMostExtrapolation = 2;
+
+}  // namespace
+
+ElasticPlastic::ElasticPlastic(const contact::Resources& resources, const Grid& grid, const double* gap,
+                               double* present_gap, contact::Solver& solver, const Pair& pair,
+                               const PairSettings& settings)
+    : resources_(resources),
+      grid_(grid),
+      gap_(gap),
+      present_gap_(present_gap),
+      solver_(solver),
+      settings_(settings),
+      identical_(pair.identical),
+      anderson_(resources.backend.arena, kDepth) {
+  for (std::size_t which = 0; which < bodies_.size(); ++which) {
+    if (!pair.material[which]) continue;
+    bodies_[which] = std::make_unique<PlasticBody>(resources.backend, grid, settings.layers, *pair.material[which],
+                                                   settings.spectra_limit);
+  }
+  approach_ = solver.first_touch();
+}
+
+std::size_t ElasticPlastic::acceleration_bytes(std::size_t unknowns) {
+  return Anderson::bytes(kDepth, unknowns);
+}
+
+template <class Body>
+void ElasticPlastic::for_bodies(const Body& body) {
+  for (const std::unique_ptr<PlasticBody>& one : bodies_) {
+    if (one != nullptr) body(*one);
+  }
+}
+
+contact::Box ElasticPlastic::contact_box() const {
+  return contact::contact_box(contact::Box::whole(grid_), solver_.pressure().data());
+}
+
+/// The gap follows the plastic strain.
+void ElasticPlastic::displace() {
+  std::copy_n(gap_, grid_.nodes(), present_gap_);
+  for_bodies([&](PlasticBody& body) { body.add_displacement(identical_ ? 2 : 1, present_gap_); });
+  solver_.gap_changed();
+}
+
+void ElasticPlastic::residual_displacement(double* result) const {
+  for (std::size_t n = 0; n < grid_.nodes(); ++n) result[n] = present_gap_[n] - gap_[n];
+}
+
+ElasticPlastic::State ElasticPlastic::state() const {
+  State state{{}, solver_.state(), last_was_force_, last_target_, last_change_, total_, approach_};
+  for (std::size_t which = 0; which < bodies_.size(); ++which) {
+    if (bodies_[which] != nullptr) state.bodies[which] = bodies_[which]->state();
+  }
+  return state;
+}
+
+void ElasticPlastic::restore(const State& state) {
+  for (std::size_t which = 0; which < bodies_.size(); ++which) {
+    if (bodies_[which] == nullptr) continue;
+    bodies_[which]->restore(*state.bodies[which]);
+    bodies_[which]->guess(0);
+  }
+  displace();
+  for (std::size_t which = 0; which < bodies_.size(); ++which) {
+    if (bodies_[which] != nullptr) bodies_[which]->restore(*state.bodies[which]);
+  }
+  solver_.restore(state.contact);
+  last_was_force_ = state.last_was_force;
+  last_target_ = state.last_target;
+  last_change_ = state.last_change;
+  total_ = state.total;
+  approach_ = state.approach;
+}
+
+/// One implicit step to the load, from the state before it; d holds a first guess. Not converged: d is the last
+/// iterate, and the rest belongs to it.
+PlasticSolution ElasticPlastic::reach(const contact::Load& load, contact::Observer observer) {
+  const double least =
+      std::min(settings_.tolerance, std::max(kLeastContact, kContactToTolerance * settings_.tolerance));
+  bool guessed = false;
+  for_bodies([&](PlasticBody& body) { guessed = guessed || body.has_increment(); });
+  double contact_tolerance = guessed ? std::max(least, kFirstContact) : least;
+  PlasticSolution solution;
+  std::size_t size = 0;
+  auto last = Clock::now();
+  while (true) {
+    ++solution.iterations;
+    displace();
+    solution.plastic_seconds += seconds_since(last);
+    const contact::Solution contact = solver_.solve(load, contact_tolerance, settings_.max_iterations, observer);
+    last = Clock::now();
+    const std::int32_t iterations = solution.contact.iterations + contact.iterations;
+    const std::int32_t convolutions = solution.contact.convolutions + contact.convolutions;
+    solution.contact = contact;
+    solution.contact.iterations = iterations;
+    solution.contact.convolutions = convolutions;
+
+    for_bodies([&](PlasticBody& body) {
+      if (body.cover(contact_box())) size = 0;
+    });
+    YieldError error;
+    for_bodies([&](PlasticBody& body) {
+      const YieldError one = body.evaluate(solver_.pressure().data(), settings_.contact_modulus);
+      error.yield = std::max(error.yield, one.yield);
+      error.flow = std::max(error.flow, one.flow);
+    });
+    bool grown = false;
+    for_bodies([&](PlasticBody& body) { grown = body.make_room_for_flow() || grown; });
+    solution.yield = error.yield;
+    const bool known = !grown && std::isfinite(error.worst());
+    solution.converged =
+        known && error.worst() <= settings_.tolerance && contact.certificate.worst() <= settings_.tolerance;
+    if (solution.converged || solution.iterations >= kIterations) {
+      solution.plastic_seconds += seconds_since(last);
+      return solution;
+    }
+    contact_tolerance = std::clamp(kContactToYield * error.worst(), least, std::max(least, kFirstContact));
+    if (grown) {
+      size = 0;
+      continue;
+    }
+
+    std::vector<AndersonPart> parts;
+    std::size_t unknowns = 0;
+    for_bodies([&](PlasticBody& body) {
+      if (body.region().empty()) return;
+      parts.push_back(body.unknowns());
+      unknowns += parts.back().size;
+    });
+    if (size != unknowns) {
+      anderson_.start(unknowns);
+      size = unknowns;
+    }
+    anderson_.advance(parts);
+    for_bodies([](PlasticBody& body) { body.confine(); });
+  }
+}
+
+PlasticSolution ElasticPlastic::advance(const contact::Load& load, contact::Observer observer) {
+  const State before = state();
+  const bool force = load.drive == contact::Drive::force;
+  const double origin = force ? total_ : approach_;
+  PlasticSolution solution;
+  solution.substeps = 0;
+  solution.converged = true;
+  double done = 0, part = 1;
+  int halvings = 0;
+  try {
+    while (done < 1) {
+      contact::Load step = load;
+      const bool last = done + part >= 1;
+      if (!last) step.target = origin + (load.target - origin) * (done + part);
+      const State start = done > 0 ? state() : State{};
+      const double change = step.target - (force ? total_ : approach_);
+      const double ratio = last_was_force_ == force && last_change_ != 0 ? change / last_change_ : 0;
+      for_bodies([&](PlasticBody& body) { body.guess(std::clamp(ratio, 0.0, kMostExtrapolation)); });
+      const PlasticSolution one = reach(step, observer);
+      const std::int32_t iterations = solution.iterations + one.iterations;
+      const std::int32_t contact_iterations = solution.contact.iterations + one.contact.iterations;
+      const std::int32_t convolutions = solution.contact.convolutions + one.contact.convolutions;
+      solution.contact = one.contact;
+      solution.contact.iterations = contact_iterations;
+      solution.contact.convolutions = convolutions;
+      solution.iterations = iterations;
+      solution.yield = one.yield;
+      solution.plastic_seconds += one.plastic_seconds;
+      if (!one.converged && halvings < kHalvings) {
+        restore(done > 0 ? start : before);
+        part /= 2;
+        ++halvings;
+        continue;
+      }
+      solution.converged = solution.converged && one.converged;
+      ++solution.substeps;
+      done = last ? 1 : done + part;
+      for_bodies([&](PlasticBody& body) {
+        if (!body.region().empty()) solution.dissipation += (identical_ ? 2 : 1) * body.accept();
+      });
+      last_was_force_ = force;
+      last_target_ = step.target;
+      last_change_ = change;
+      total_ = one.contact.total;
+      approach_ = one.contact.approach;
+    }
+    for_bodies([&](PlasticBody& body) {
+      if (!body.flow_is_cut_off()) return;
+      fail(Status::invalid_scene,
+           "plastic strain reaches the last layer of cuboids or the side of the grid: what lies beyond is not known; "
+           "give the grid more layers or nodes");
+    });
+  } catch (...) {
+    restore(before);
+    throw;
+  }
+  return solution;
+}
+
+}  // namespace brinell::plastic

@@ -1,0 +1,511 @@
+#include "plastic/plastic_body.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+#include "plastic/return_mapping.h"
+#include "simd/kernel_table.h"
+#include "subsurface/depths.h"
+
+namespace brinell::plastic {
+
+namespace {
+
+constexpr std::size_t kBlock = Anderson::kBlock;
+static_assert(kBlock == simd::kReturnBlock);
+constexpr std::int64_t kChunk = 32 * static_cast<std::int64_t>(kBlock);  // cuboids
+constexpr std::size_t kAll = 6;
+
+// A box is made for a contact of this many times the half width.
+constexpr double kRoom = 1.25;
+// Half width and depth of the box that a smooth contact needs, in half widths of the contact.
+constexpr double kLateral = 1.5;
+constexpr double kDepth = 2.1;
+// Nodes in contact stay this far from the sides of the box, flow at least as many cuboids.
+constexpr std::int64_t kShells = 2;
+// Flow of this part of the largest plastic strain does not count at a side: laws without a yield stress flow
+// everywhere.
+constexpr double kNegligible = 1e-5;
+// Where flow has reached a side, all move by this part of the box: coefficients of a box take longer to generate than
+// those of a few smaller ones would save.
+constexpr double kGrowth = 0.17;
+constexpr std::int64_t kLeastGrowth = 3;
+
+double square(double value) {
+  return value * value;
+}
+
+}  // namespace
+
+PlasticBody::PlasticBody(const fft::Backend& backend, const Grid& grid, const Layers& layers,
+                         const PlasticMaterial& material, std::size_t spectra_limit)
+    : backend_(backend),
+      grid_(grid),
+      layers_(layers),
+      material_(material),
+      spectra_limit_(spectra_limit),
+      law_(material.hardening),
+      shear_modulus_(material.youngs_modulus / (2 * (1 + material.poissons_ratio))),
+      displacement_(grid.nodes()) {
+  const std::vector<double> depths = subsurface::layer_depths(layers.count, layers.thickness);
+  if (!material.hardening.depth_factor.empty()) layer_factor_ = law_.factors_at(depths);
+}
+
+std::size_t PlasticBody::stride_of(const Box& box) {
+  return (box.cuboids() + kBlock - 1) / kBlock * kBlock;
+}
+
+TensorView PlasticBody::view(const Buffer<double>& field) const {
+  TensorView tensor{};
+  for (std::size_t c = 0; c < kAll; ++c) tensor[c] = field.data() + c * stride_;
+  return tensor;
+}
+
+TensorArrays PlasticBody::arrays(Buffer<double>& field) const {
+  TensorArrays tensor{};
+  for (std::size_t c = 0; c < kAll; ++c) tensor[c] = field.data() + c * stride_;
+  return tensor;
+}
+
+bool PlasticBody::cover(const contact::Box& contact) {
+  if (contact.nx == 0) return false;
+  const auto within = [](std::int64_t first, std::int64_t count, std::int64_t box_first, std::int64_t box_count,
+                         std::int64_t nodes) {
+    return box_first <= std::max<std::int64_t>(0, first - kShells) &&
+           box_first + box_count >= std::min(nodes, first + count + kShells);
+  };
+  if (!region_.empty() && within(contact.i0, contact.nx, region_.i0, region_.box.nx, grid_.nx) &&
+      within(contact.j0, contact.ny, region_.j0, region_.box.ny, grid_.ny)) {
+    return false;
+  }
+  const auto side = [](std::int64_t first, std::int64_t count, std::int64_t old_first, std::int64_t old_count,
+                       std::int64_t nodes) {
+    const double half = 0.5 * static_cast<double>(count);
+    const auto margin = static_cast<std::int64_t>(std::ceil((kRoom * kLateral - 1) * half)) + kShells;
+    std::int64_t begin = std::max<std::int64_t>(0, first - margin), end = std::min(nodes, first + count + margin);
+    if (old_count > 0) {
+      begin = std::min(begin, old_first);
+      end = std::max(end, old_first + old_count);
+    }
+    return std::pair{begin, end - begin};
+  };
+  Region next;
+  next.box = {0, 0, 0, grid_.dx, grid_.dy, layers_.thickness};
+  std::tie(next.i0, next.box.nx) = side(contact.i0, contact.nx, region_.i0, region_.box.nx, grid_.nx);
+  std::tie(next.j0, next.box.ny) = side(contact.j0, contact.ny, region_.j0, region_.box.ny, grid_.ny);
+  const double half =
+      0.5 * std::max(static_cast<double>(contact.nx) * grid_.dx, static_cast<double>(contact.ny) * grid_.dy);
+  const double depth = std::ceil(kRoom * kDepth * half / layers_.thickness) + kShells;
+  next.box.nz = depth < static_cast<double>(layers_.count) ? static_cast<std::int64_t>(depth) : layers_.count;
+  if (!layer_factor_.empty()) next.box.nz = layers_.count;  // a soft layer may flow by itself
+  next.box.nz = std::max(next.box.nz, region_.box.nz);
+  move_to(next);
+  return true;
+}
+
+bool PlasticBody::make_room_for_flow() {
+  if (region_.empty()) return false;
+  const Box& box = region_.box;
+  const auto near_side = [&](std::size_t n) {
+    const auto at = static_cast<std::int64_t>(n);
+    const std::int64_t i = at % box.nx, j = at / box.nx % box.ny, k = at / (box.nx * box.ny);
+    return (i < kShells && region_.i0 > 0) || (j < kShells && region_.j0 > 0) ||
+           (i >= box.nx - kShells && region_.i0 + box.nx < grid_.nx) ||
+           (j >= box.ny - kShells && region_.j0 + box.ny < grid_.ny) ||
+           (k >= box.nz - kShells && box.nz < layers_.count);
+  };
+  const double negligible = kNegligible * *std::max_element(p_mapped_.begin(), p_mapped_.end());
+  bool reached = false;
+  for (std::size_t at = 0; at < blocks_.size() / kAll && !reached; ++at) {
+    const std::size_t first = static_cast<std::size_t>(blocks_[at]) * kBlock;
+    for (std::size_t n = first; n < std::min(first + kBlock, box.cuboids()) && !reached; ++n) {
+      reached = flows(n) && std::max(p_mapped_[n], p_[n]) > negligible && near_side(n);
+    }
+  }
+  if (!reached) return false;
+  const auto more = [](std::int64_t size) {
+    return std::max(kLeastGrowth, static_cast<std::int64_t>(kGrowth * static_cast<double>(size)));
+  };
+  Region next = region_;
+  const auto widen = [&](std::int64_t& first, std::int64_t& count, std::int64_t nodes) {
+    const std::int64_t by = more(count), end = std::min(nodes, first + count + by);
+    first = std::max<std::int64_t>(0, first - by);
+    count = end - first;
+  };
+  widen(next.i0, next.box.nx, grid_.nx);
+  widen(next.j0, next.box.ny, grid_.ny);
+  next.box.nz = std::min(layers_.count, box.nz + 2 * more(box.nz));
+  if (next == region_) return false;
+  move_to(next);
+  return true;
+}
+
+bool PlasticBody::flow_is_cut_off() const {
+  const Box& box = region_.box;
+  if (region_.empty()) return false;
+  const double negligible = kNegligible * *std::max_element(p_.begin(), p_.end());
+  for (std::size_t n = 0; n < box.cuboids(); ++n) {
+    if (!(p_[n] > negligible)) continue;
+    const auto at = static_cast<std::int64_t>(n);
+    const std::int64_t i = region_.i0 + at % box.nx, j = region_.j0 + at / box.nx % box.ny;
+    if (i == 0 || j == 0 || i == grid_.nx - 1 || j == grid_.ny - 1) return true;
+    if (at / (box.nx * box.ny) == layers_.count - 1) return true;
+  }
+  return false;
+}
+
+/// Copies what is known into a box that holds the present one.
+void PlasticBody::move_to(const Region& next) {
+  const Region before = region_;
+  const std::size_t stride_before = stride_;
+  region_ = next;
+  response_.reset();
+  stress_.reset();
+  const Box& box = region_.box;
+  stride_ = stride_of(box);
+  const auto moved_field = [&](const Buffer<double>& field, std::size_t components) {
+    Buffer<double> result(components * stride_);
+    if (before.empty()) return result;
+    for (std::size_t c = 0; c < components; ++c) {
+      for (std::int64_t k = 0; k < before.box.nz; ++k) {
+        for (std::int64_t j = 0; j < before.box.ny; ++j) {
+          const std::int64_t to = (k * box.ny + j + before.j0 - region_.j0) * box.nx + before.i0 - region_.i0;
+          std::copy_n(
+              field.data() + c * stride_before + static_cast<std::size_t>((k * before.box.ny + j) * before.box.nx),
+              before.box.nx, result.data() + c * stride_ + static_cast<std::size_t>(to));
+        }
+      }
+    }
+    return result;
+  };
+  old_ = moved_field(old_, kAll);
+  d_ = moved_field(d_, kAll);
+  p_old_ = moved_field(p_old_, 1);
+  for (Buffer<double>* field : {&strain_, &mapped_, &residual_, &total_, &trial_})
+    *field = Buffer<double>(kAll * stride_);
+  for (Buffer<double>* field : {&p_, &p_mapped_, &von_mises_, &yield_}) *field = Buffer<double>(stride_);
+  std::copy(old_.begin(), old_.end(), strain_.begin());
+  std::copy(p_old_.begin(), p_old_.end(), p_.begin());
+  std::copy(p_old_.begin(), p_old_.end(), p_mapped_.begin());
+  pressure_ = Buffer<double>(static_cast<std::size_t>(box.nx * box.ny));
+  if (!layer_factor_.empty()) {
+    factor_ = Buffer<double>(stride_);
+    for (std::size_t n = 0; n < box.cuboids(); ++n) {
+      factor_[n] = layer_factor_[n / static_cast<std::size_t>(box.nx * box.ny)];
+    }
+    std::fill(factor_.begin() + box.cuboids(), factor_.end(), 1.0);
+  }
+  accepted_ = residual_is_current_ = displacement_is_current_ = false;
+  moved_.assign(stride_ / kBlock, 1);
+  active_.assign(stride_ / kBlock, 0);
+  for (std::size_t block = 0; block < active_.size(); ++block) {
+    for (std::size_t c = 0; c < kAll && active_[block] == 0; ++c) {
+      const double* values = d_.data() + c * stride_ + block * kBlock;
+      active_[block] = std::any_of(values, values + kBlock, [](double value) { return value != 0; }) ? 1 : 0;
+    }
+  }
+  list_blocks();
+  combine();
+}
+
+void PlasticBody::list_blocks() {
+  blocks_.clear();
+  for (std::size_t c = 0; c < kAll; ++c) {
+    for (std::size_t block = 0; block < active_.size(); ++block) {
+      if (active_[block] != 0) blocks_.push_back(static_cast<std::int64_t>(c * active_.size() + block));
+    }
+  }
+}
+
+/// strain = before + d, p = p_before + √(2/3 d:d), where there is an increment.
+void PlasticBody::combine() {
+  const std::size_t count = blocks_.size() / kAll;
+  if (count == 0) return;
+  accepted_ = residual_is_current_ = displacement_is_current_ = false;
+  backend_.arena.for_chunks(static_cast<std::int64_t>(count), 8, [&](std::int64_t begin, std::int64_t end, int) {
+    for (std::int64_t at = begin; at < end; ++at) {
+      const std::size_t first = static_cast<std::size_t>(blocks_[static_cast<std::size_t>(at)]) * kBlock;
+      for (std::size_t c = 0; c < kAll; ++c) {
+        for (std::size_t n = first; n < first + kBlock; ++n) {
+          strain_[c * stride_ + n] = old_[c * stride_ + n] + d_[c * stride_ + n];
+        }
+      }
+      for (std::size_t n = first; n < first + kBlock; ++n) {
+        double sum = 0;
+        for (std::size_t c = 0; c < kAll; ++c) sum += (c < 3 ? 1 : 2) * square(d_[c * stride_ + n]);
+        p_[n] = p_old_[n] + std::sqrt(2.0 / 3 * sum);
+      }
+    }
+  });
+}
+
+void PlasticBody::guess(double factor) {
+  // Without an increment the strain is what it was when it was accepted.
+  const bool same = factor == 0 && accepted_;
+  const bool residual = same && residual_is_current_, displacement = same && displacement_is_current_;
+  for (const std::int64_t block : blocks_) {
+    double* values = d_.data() + static_cast<std::size_t>(block) * kBlock;
+    for (std::size_t i = 0; i < kBlock; ++i) values[i] *= factor;
+  }
+  const bool changed = !blocks_.empty();
+  combine();
+  if (factor != 0) return;
+  if (changed) {
+    residual_is_current_ = residual;
+    displacement_is_current_ = displacement;
+  }
+  std::fill(active_.begin(), active_.end(), std::uint8_t{0});
+  std::fill(moved_.begin(), moved_.end(), std::uint8_t{1});
+  blocks_.clear();
+}
+
+bool PlasticBody::has_increment() const {
+  return std::any_of(blocks_.begin(), blocks_.end(), [&](std::int64_t block) {
+    const double* values = d_.data() + static_cast<std::size_t>(block) * kBlock;
+    return std::any_of(values, values + kBlock, [](double value) { return value != 0; });
+  });
+}
+
+void PlasticBody::add_displacement(double weight, double* displacement) {
+  if (region_.empty() || std::none_of(strain_.begin(), strain_.end(), [](double value) { return value != 0; })) {
+    return;
+  }
+  if (surface_ == nullptr || surface_->layers() < region_.box.nz) {
+    surface_.reset();
+    surface_ = std::make_unique<EigenstrainDisplacement>(backend_, grid_, region_.box.nz, layers_.thickness,
+                                                         material_.poissons_ratio);
+  }
+  if (!displacement_is_current_) {
+    surface_->displacement(strain(), region_.box, region_.i0, region_.j0, displacement_.data());
+    displacement_is_current_ = true;
+  }
+  for (std::size_t n = 0; n < displacement_.size(); ++n) displacement[n] += weight * displacement_[n];
+}
+
+YieldError PlasticBody::evaluate(const double* pressure, double unit) {
+  if (region_.empty()) return {};
+  const Box& box = region_.box;
+  if (stress_ == nullptr) {
+    subsurface::StressRequest request;
+    request.grid = {box.nx, box.ny, grid_.dx, grid_.dy};
+    request.poissons_ratio = material_.poissons_ratio;
+    request.depths = subsurface::layer_depths(box.nz, layers_.thickness);
+    request.components = subsurface::kAllComponents;
+    stress_ = std::make_unique<subsurface::StressField>(backend_, request, spectra_limit_);
+  }
+  bool pressed = false;
+  for (std::int64_t j = 0; j < box.ny; ++j) {
+    const double* row = pressure + (region_.j0 + j) * grid_.nx + region_.i0;
+    for (std::int64_t i = 0; i < box.nx; ++i) {
+      pressed = pressed || row[i] > 0;
+      pressure_[static_cast<std::size_t>(j * box.nx + i)] = row[i] * unit;
+    }
+  }
+  const TensorArrays contact = arrays(trial_);
+  if (pressed) {
+    subsurface::StressFields fields;
+    std::copy(contact.begin(), contact.end(), fields.component.begin());
+    stress_->compute({pressure_.data(), nullptr, nullptr}, fields);
+  } else {
+    std::fill(trial_.begin(), trial_.end(), 0.0);
+  }
+  if (!residual_is_current_) {
+    residual_stress(arrays(residual_));
+    residual_is_current_ = true;
+  }
+  YieldError error = compare(trial_);
+
+  TrialState state;
+  state.count = box.cuboids();
+  state.trial = view(trial_);
+  state.plastic_strain = p_old_.data();
+  if (!layer_factor_.empty()) state.layer_factor = {layer_factor_.data(), static_cast<std::size_t>(box.nz)};
+  MappedState result;
+  result.increment = arrays(mapped_);
+  result.plastic_strain = p_mapped_.data();
+  result.moved = moved_.data();
+  map_to_yield(backend_.arena, backend_.kernels, law_, shear_modulus_, state, result);
+
+  bool more = false;
+  for (std::size_t block = 0; block < active_.size(); ++block) {
+    if (moved_[block] == 0 || active_[block] != 0) continue;
+    const double* before = p_old_.data() + block * kBlock;
+    if (std::equal(before, before + kBlock, p_mapped_.data() + block * kBlock)) continue;
+    active_[block] = 1;
+    more = true;
+  }
+  if (more) list_blocks();
+  error.flow = distance_of_flow().flow;
+  return error;
+}
+
+void PlasticBody::residual_stress(const TensorArrays& result) {
+  const Box& box = region_.box;
+  if (std::none_of(strain_.begin(), strain_.end(), [](double value) { return value != 0; })) {
+    for (double* component : result) std::fill_n(component, box.cuboids(), 0.0);
+    return;
+  }
+  if (response_ == nullptr) {
+    response_ = std::make_unique<EigenstrainResponse>(backend_, box, shear_modulus_, material_.poissons_ratio);
+  }
+  response_->stress(strain(), result);
+}
+
+/// Total and trial stress from the residual stress and the contact's, which is in trial; the yield condition.
+YieldError PlasticBody::compare(Buffer<double>& trial) {
+  const std::size_t cuboids = region_.box.cuboids();
+  const auto chunks = (static_cast<std::int64_t>(cuboids) + kChunk - 1) / kChunk;
+  std::vector<double> worst(static_cast<std::size_t>(chunks));
+  const double twice_mu = 2 * shear_modulus_;
+  backend_.arena.for_chunks(static_cast<std::int64_t>(cuboids), kChunk, [&](std::int64_t from, std::int64_t to, int) {
+    const auto begin = static_cast<std::size_t>(from), end = static_cast<std::size_t>(to);
+    simd::StressArrays stress;
+    for (std::size_t c = 0; c < kAll; ++c) {
+      double* total = total_.data() + c * stride_;
+      const double* residual = residual_.data() + c * stride_;
+      double* tried = trial.data() + c * stride_;
+      const double* increment = d_.data() + c * stride_;
+      for (std::size_t n = begin; n < end; ++n) {
+        total[n] = residual[n] + tried[n];
+        tried[n] = total[n] + twice_mu * increment[n];
+      }
+      stress.component[c] = total + begin;
+    }
+    backend_.kernels.subsurface.von_mises(end - begin, stress, von_mises_.data() + begin);
+    backend_.kernels.return_mapping.yield_stress(end - begin, law_.curve(), p_.data() + begin,
+                                                 factor_.empty() ? nullptr : factor_.data() + begin,
+                                                 yield_.data() + begin);
+    double most = 0;
+    for (std::size_t n = begin; n < end; ++n) {
+      const double excess = von_mises_[n] - yield_[n];
+      const double error = (p_[n] > p_old_[n] ? std::fabs(excess) : excess) / yield_[n];
+      most = std::max(most, error);
+    }
+    worst[begin / static_cast<std::size_t>(kChunk)] = most;
+  });
+  return {*std::max_element(worst.begin(), worst.end()), 0};
+}
+
+YieldError PlasticBody::distance_of_flow() const {
+  double most = 0;
+  const std::size_t count = blocks_.size() / kAll;
+  for (std::size_t at = 0; at < count; ++at) {
+    const std::size_t first = static_cast<std::size_t>(blocks_[at]) * kBlock;
+    for (std::size_t n = first; n < std::min(first + kBlock, region_.box.cuboids()); ++n) {
+      double sum = 0;
+      for (std::size_t c = 0; c < kAll; ++c) {
+        sum += (c < 3 ? 1 : 2) * square(mapped_[c * stride_ + n] - d_[c * stride_ + n]);
+      }
+      most = std::max(most, sum / square(yield_[n]));
+    }
+  }
+  return {0, 2 * shear_modulus_ * std::sqrt(1.5 * most)};
+}
+
+AndersonPart PlasticBody::unknowns() {
+  return {d_.data(), mapped_.data(), d_.size(), blocks_};
+}
+
+void PlasticBody::confine() {
+  const std::size_t count = blocks_.size() / kAll;
+  for (std::size_t at = 0; at < count; ++at) {
+    const std::size_t first = static_cast<std::size_t>(blocks_[at]) * kBlock;
+    for (std::size_t n = first; n < first + kBlock; ++n) {
+      if (p_mapped_[n] > p_old_[n]) continue;
+      for (std::size_t c = 0; c < kAll; ++c) d_[c * stride_ + n] = 0;
+    }
+  }
+  combine();
+}
+
+double PlasticBody::accept() {
+  double work = 0;
+  for (const std::int64_t block : blocks_) {
+    const std::size_t first = static_cast<std::size_t>(block) * kBlock, c = first / stride_;
+    for (std::size_t n = first; n < first + kBlock; ++n) {
+      work += (c < 3 ? 1 : 2) * total_[n] * d_[n];
+      old_[n] = strain_[n];
+    }
+  }
+  std::copy(p_.begin(), p_.end(), p_old_.begin());
+  std::copy(p_.begin(), p_.end(), p_mapped_.begin());
+  std::fill(moved_.begin(), moved_.end(), std::uint8_t{1});
+  accepted_ = true;
+  return work * region_.box.dx * region_.box.dy * region_.box.dz;
+}
+
+LargestPlasticStrain PlasticBody::largest() const {
+  LargestPlasticStrain result;
+  const Box& box = region_.box;
+  std::size_t at = 0;
+  for (std::size_t n = 0; n < box.cuboids(); ++n) {
+    if (!(p_[n] > 0)) continue;
+    ++result.cuboids;
+    if (p_[n] > result.value) {
+      result.value = p_[n];
+      at = n;
+    }
+  }
+  if (result.cuboids == 0) return result;
+  const auto n = static_cast<std::int64_t>(at);
+  result.at = {grid_.x(region_.i0 + n % box.nx), grid_.y(region_.j0 + n / box.nx % box.ny),
+               (static_cast<double>(n / (box.nx * box.ny)) + 0.5) * box.dz};
+  return result;
+}
+
+PlasticBody::State PlasticBody::state() const {
+  const auto copy = [](const Buffer<double>& field) {
+    auto result = Buffer<double>::uninitialised(field.size());
+    std::copy(field.begin(), field.end(), result.begin());
+    return result;
+  };
+  return {region_, copy(old_), copy(d_), copy(p_old_)};
+}
+
+void PlasticBody::restore(const State& state) {
+  if (state.region.empty()) {
+    region_ = {};
+    stride_ = 0;
+    blocks_.clear();
+    active_.clear();
+    return;
+  }
+  const auto copy = [](const Buffer<double>& field) {
+    auto result = Buffer<double>::uninitialised(field.size());
+    std::copy(field.begin(), field.end(), result.begin());
+    return result;
+  };
+  old_ = copy(state.strain);
+  d_ = copy(state.increment);
+  p_old_ = copy(state.equivalent);
+  const bool same = region_ == state.region;
+  std::unique_ptr<EigenstrainResponse> response = std::move(response_);
+  std::unique_ptr<subsurface::StressField> stress = std::move(stress_);
+  region_ = state.region;
+  stride_ = old_.size() / kAll;
+  move_to(Region(region_));
+  if (!same) return;
+  response_ = std::move(response);
+  stress_ = std::move(stress);
+}
+
+std::size_t PlasticBody::bytes(const fft::Backend& backend, const Grid& grid, const Layers& layers,
+                               std::size_t spectra_limit) {
+  const Box box{grid.nx, grid.ny, layers.count, grid.dx, grid.dy, layers.thickness};
+  subsurface::StressRequest request;
+  request.grid = grid;
+  request.depths = subsurface::layer_depths(layers.count, layers.thickness);
+  request.components = subsurface::kAllComponents;
+  const subsurface::StressPlan stress = subsurface::plan_stress(backend, request, spectra_limit);
+  const EigenstrainResponse::Bytes response = EigenstrainResponse::bytes(backend, box);
+  const EigenstrainResponse::Bytes surface =
+      EigenstrainDisplacement::bytes(backend, grid, layers.count, layers.thickness);
+  constexpr std::size_t kFields = 2 * 7 * kAll + 6;  // while the box grows, some twice; and the state to go back to
+  return stress.kept_bytes + stress.work_bytes + response.spectra + response.work + surface.spectra + surface.work +
+         std::max(response.generation, surface.generation) + kFields * Buffer<double>::padded_bytes(box.cuboids()) +
+         2 * Buffer<double>::padded_bytes(grid.nodes());
+}
+
+}  // namespace brinell::plastic
