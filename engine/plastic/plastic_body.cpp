@@ -25,9 +25,10 @@ constexpr double kLateral = 1.5;
 constexpr double kDepth = 2.1;
 // Nodes in contact stay this far from the sides of the box, flow at least as many cuboids.
 constexpr std::int64_t kShells = 2;
-// A side that flow has reached moves by this part of the box.
-constexpr double kGrowth = 0.2;
-constexpr std::int64_t kLeastGrowth = 4;
+// Where flow has reached a side, all move by this part of the box: coefficients of a box take longer to generate than
+// those of a few smaller ones would save.
+constexpr double kGrowth = 0.17;
+constexpr std::int64_t kLeastGrowth = 3;
 
 double square(double value) {
   return value * value;
@@ -104,38 +105,34 @@ bool PlasticBody::cover(const contact::Box& contact) {
 bool PlasticBody::make_room_for_flow() {
   if (region_.empty()) return false;
   const Box& box = region_.box;
-  std::int64_t near_left = 0, near_right = 0, near_front = 0, near_back = 0, near_bottom = 0;
-  for (const std::int64_t block : blocks_) {
-    if (block >= static_cast<std::int64_t>(stride_ / kBlock)) break;  // the other components' are the same
-    const std::size_t first = static_cast<std::size_t>(block) * kBlock;
-    for (std::size_t n = first; n < std::min(first + kBlock, box.cuboids()); ++n) {
-      if (!flows(n)) continue;
-      const auto at = static_cast<std::int64_t>(n);
-      const std::int64_t i = at % box.nx, j = at / box.nx % box.ny, k = at / (box.nx * box.ny);
-      near_left += i < kShells;
-      near_right += i >= box.nx - kShells;
-      near_front += j < kShells;
-      near_back += j >= box.ny - kShells;
-      near_bottom += k >= box.nz - kShells;
+  const auto near_side = [&](std::size_t n) {
+    const auto at = static_cast<std::int64_t>(n);
+    const std::int64_t i = at % box.nx, j = at / box.nx % box.ny, k = at / (box.nx * box.ny);
+    return (i < kShells && region_.i0 > 0) || (j < kShells && region_.j0 > 0) ||
+           (i >= box.nx - kShells && region_.i0 + box.nx < grid_.nx) ||
+           (j >= box.ny - kShells && region_.j0 + box.ny < grid_.ny) ||
+           (k >= box.nz - kShells && box.nz < layers_.count);
+  };
+  bool reached = false;
+  for (std::size_t at = 0; at < blocks_.size() / kAll && !reached; ++at) {
+    const std::size_t first = static_cast<std::size_t>(blocks_[at]) * kBlock;
+    for (std::size_t n = first; n < std::min(first + kBlock, box.cuboids()) && !reached; ++n) {
+      reached = flows(n) && near_side(n);
     }
   }
+  if (!reached) return false;
   const auto more = [](std::int64_t size) {
     return std::max(kLeastGrowth, static_cast<std::int64_t>(kGrowth * static_cast<double>(size)));
   };
   Region next = region_;
-  const auto widen = [&](std::int64_t low, std::int64_t high, std::int64_t& first, std::int64_t& count,
-                         std::int64_t nodes) {
-    const std::int64_t size = count;
-    if (low > 0) {
-      const std::int64_t by = std::min(first, more(size));
-      first -= by;
-      count += by;
-    }
-    if (high > 0) count += std::min(nodes - first - count, more(size));
+  const auto widen = [&](std::int64_t& first, std::int64_t& count, std::int64_t nodes) {
+    const std::int64_t by = more(count), end = std::min(nodes, first + count + by);
+    first = std::max<std::int64_t>(0, first - by);
+    count = end - first;
   };
-  widen(near_left, near_right, next.i0, next.box.nx, grid_.nx);
-  widen(near_front, near_back, next.j0, next.box.ny, grid_.ny);
-  if (near_bottom > 0) next.box.nz = std::min(layers_.count, box.nz + more(box.nz));
+  widen(next.i0, next.box.nx, grid_.nx);
+  widen(next.j0, next.box.ny, grid_.ny);
+  next.box.nz = std::min(layers_.count, box.nz + 2 * more(box.nz));
   if (next == region_) return false;
   move_to(next);
   return true;

@@ -81,7 +81,7 @@ class PlasticBody {
   /// Lets the box grow so that it holds the contact with a margin; true if it grew.
   bool cover(const contact::Box& contact);
 
-  /// Lets it grow where flow has come near a side that is not the grid's; true if it grew.
+  /// Lets it grow once flow has come near a side that is not the grid's; true if it grew.
   bool make_room_for_flow();
 
   /// Flow in the last layer of all, or below the grid's side: what lies beyond it is unknown.
