@@ -122,13 +122,14 @@ def reference(program, folder, grids, elastic):
             entry[name] = quantity(value, max(tolerance, least), "refined")
         increments.append(entry)
     used = {q["source"] for i in increments for q in i.values() if isinstance(q, dict)}
-    return {"title": profile["title"], "certificate": CERTIFICATE,
+    return {"title": profile["title"], "certificate": CERTIFICATE, "hardens": True,
             "sources": {k: v for k, v in SOURCES.items() if k in used}, "increments": increments}
 
 
 def written(data):
     """As the other references: a line a quantity."""
-    lines = [f' "title": {json.dumps(data["title"])},', f' "certificate": {data["certificate"]},', ' "sources": {']
+    lines = [f' "title": {json.dumps(data["title"])},', f' "certificate": {data["certificate"]},', ' "hardens": true,',
+             ' "sources": {']
     lines.append(",\n".join(f"  {json.dumps(k)}: {json.dumps(v)}" for k, v in data["sources"].items()))
     lines += [" },", ' "increments": [']
     lines.append(",\n".join("  {\n" + ",\n".join(f"   {json.dumps(k)}: {json.dumps(v)}" for k, v in i.items()) + "\n  }"

@@ -480,8 +480,8 @@ typedef struct brn_increment {
   int32_t stress_missing; /* 0; 1: its stress was cancelled or failed, and the next brn_run_advance computes it */
   int32_t reserved2;
   /* Of bodies that harden; NaN and 0 for others: */
-  double yield;     /* entry of the certificate: worst violation of the yield condition by the total stress, in cuboids
-                       that flow its distance from it, relative to the yield stress */
+  double yield; /* entry of the certificate: worst violation of the yield condition by the total stress, in cuboids
+                   that flow its distance from it, relative to the yield stress */
   int32_t substeps; /* parts in which the increment was solved: 1 unless it did not converge as a whole */
   int32_t reserved3;
   double max_equivalent_plastic_strain;
@@ -579,7 +579,8 @@ enum {
   BRN_FIELD_GAP = 2,            /* of the deformed surfaces [m] */
   BRN_FIELD_DISPLACEMENT = 3,   /* normal, of both bodies together [m] */
   BRN_FIELD_UNDEFORMED_GAP = 4, /* [m]; known before the first increment */
-  /* Displacement of the surface that plastic strain alone leaves [m], positive into the body; where that body hardens: */
+  /* Displacement of the surface that plastic strain alone leaves [m], positive into the body; where that body
+     hardens: */
   BRN_FIELD_RESIDUAL_DISPLACEMENT = 10,
   BRN_FIELD_UPPER_RESIDUAL_DISPLACEMENT = 110,
   /* Below the lower body's surface [Pa], tension positive; only those that brn_subsurface.fields names: */
@@ -802,10 +803,11 @@ static inline void brn_hardening_init(brn_hardening *value) {
   value->depth_count = 0;
 }
 
-/* The body hardens after this law (NULL or BRN_HARDENING_NONE: it stays elastic), whatever brn_scene_set_body makes of
- * it. Such scenes need a free boundary, layers, and no traction_ratio; depths of brn_subsurface must be the layers'. A
- * run then solves plastic strain, residual stress and contact together; BRN_INVALID_SCENE from brn_run_advance: plastic
- * strain has reached the last layer or the grid's side, and the state is that before the increment. */
+/* The body hardens after this law (NULL or BRN_HARDENING_NONE: it stays elastic), whatever brn_scene_set_body makes
+ * of it. Such scenes need a free boundary, layers, and no traction_ratio; depths of brn_subsurface must be the
+ * layers'. A run then solves plastic strain, residual stress and contact together; BRN_INVALID_SCENE from
+ * brn_run_advance: plastic strain has reached the last layer or the grid's side, and the state is that before the
+ * increment. */
 BRN_API brn_status brn_scene_set_hardening(brn_scene *scene, int32_t which, const brn_hardening *hardening);
 
 /* Layers of cuboids, thickness [m] > 0, in which plastic strain is uniform; their sides are the grid's spacing. */

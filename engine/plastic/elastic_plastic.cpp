@@ -17,7 +17,7 @@ double seconds_since(Clock::time_point start) {
 }
 
 constexpr std::size_t kDepth = 6;  // of the acceleration
-constexpr std::int32_t kIterations = 60;
+constexpr std::int32_t kIterations = 80;
 constexpr int kHalvings = 6;
 // The contact of an iteration is solved to this fraction of the error in the yield condition: with 0.02 its error
 // costs a quarter more iterations, with 0.1 it keeps them from converging. Not beyond this fraction of the tolerance,

@@ -25,6 +25,9 @@ constexpr double kLateral = 1.5;
 constexpr double kDepth = 2.1;
 // Nodes in contact stay this far from the sides of the box, flow at least as many cuboids.
 constexpr std::int64_t kShells = 2;
+// Flow of this part of the largest plastic strain does not count at a side: laws without a yield stress flow
+// everywhere.
+constexpr double kNegligible = 1e-5;
 // Where flow has reached a side, all move by this part of the box: coefficients of a box take longer to generate than
 // those of a few smaller ones would save.
 constexpr double kGrowth = 0.17;
@@ -113,11 +116,12 @@ bool PlasticBody::make_room_for_flow() {
            (j >= box.ny - kShells && region_.j0 + box.ny < grid_.ny) ||
            (k >= box.nz - kShells && box.nz < layers_.count);
   };
+  const double negligible = kNegligible * *std::max_element(p_mapped_.begin(), p_mapped_.end());
   bool reached = false;
   for (std::size_t at = 0; at < blocks_.size() / kAll && !reached; ++at) {
     const std::size_t first = static_cast<std::size_t>(blocks_[at]) * kBlock;
     for (std::size_t n = first; n < std::min(first + kBlock, box.cuboids()) && !reached; ++n) {
-      reached = flows(n) && near_side(n);
+      reached = flows(n) && std::max(p_mapped_[n], p_[n]) > negligible && near_side(n);
     }
   }
   if (!reached) return false;
@@ -140,8 +144,10 @@ bool PlasticBody::make_room_for_flow() {
 
 bool PlasticBody::flow_is_cut_off() const {
   const Box& box = region_.box;
+  if (region_.empty()) return false;
+  const double negligible = kNegligible * *std::max_element(p_.begin(), p_.end());
   for (std::size_t n = 0; n < box.cuboids(); ++n) {
-    if (!(p_[n] > 0)) continue;
+    if (!(p_[n] > negligible)) continue;
     const auto at = static_cast<std::int64_t>(n);
     const std::int64_t i = region_.i0 + at % box.nx, j = region_.j0 + at / box.nx % box.ny;
     if (i == 0 || j == 0 || i == grid_.nx - 1 || j == grid_.ny - 1) return true;

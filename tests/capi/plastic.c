@@ -107,8 +107,7 @@ static void a_sphere_leaves_an_imprint(void) {
   layer = malloc(6 * nodes * sizeof *layer);
   CHECK_STATUS(BRN_OK, brn_run_get_layer(run, BRN_FIELD_RESIDUAL_STRESS, 3, layer, 6 * nodes, &count));
   CHECK(memcmp(layer, residual + 3 * 6 * nodes, 6 * nodes * sizeof *layer) == 0);
-  CHECK_STATUS(BRN_WRONG_STATE,
-               brn_run_get_field(run, BRN_FIELD_UPPER_RESIDUAL_DISPLACEMENT, layer, nodes, &count));
+  CHECK_STATUS(BRN_WRONG_STATE, brn_run_get_field(run, BRN_FIELD_UPPER_RESIDUAL_DISPLACEMENT, layer, nodes, &count));
   CHECK_SAYS(brn_run_message(run), "upper_residual_displacement|harden");
   free(layer);
   free(displacement);

@@ -48,7 +48,8 @@ SUMMARY_KEYS = {"title", "converged", "version", "engine", "plan", "increments",
 INCREMENT_KEYS = {
     "step", "increment", "normal_force", "approach", "tilt", "centre_of_force", "first_touch", "contact_area",
     "contact_nodes", "max_pressure", "max_pressure_at", "mean_gap", "max_von_mises", "max_von_mises_at",
-    "upper_max_von_mises", "upper_max_von_mises_at", "max_equivalent_plastic_strain", "max_equivalent_plastic_strain_at", "plastic_nodes", "iterations",
+    "upper_max_von_mises", "upper_max_von_mises_at", "max_equivalent_plastic_strain", "max_equivalent_plastic_strain_at",
+    "plastic_nodes", "iterations",
     "convolutions", "certificate", "wall_seconds"}
 
 
@@ -376,6 +377,93 @@ increments = 2
                 for result in (self.run_scene(), self.brinell("check", self.scene)):
                     self.expect(result, 2, "brinell: ", "scene.toml", *words)
                 self.assertFalse(self.out.exists())
+
+    # ------------------------------------------------------------------ bodies that harden
+
+    def hardening_scene(self, old="", new=""):
+        """A sphere on soft steel, loaded and unloaded: contact radius 15 um."""
+        text = """title = "Imprint"
+[grid]
+nodes = [24, 24]
+spacing = [2e-6, 2e-6]
+layers = 14
+layer_thickness = 2.5e-6
+[lower]
+youngs_modulus = 210e9
+poissons_ratio = 0.3
+[lower.hardening]
+law = "linear"
+yield_stress = 800e6
+hardening_modulus = 5e9
+[upper]
+rigid = true
+[[surface]]
+shape = "sphere"
+radius = 1e-3
+[[step]]
+normal_force = 1.0
+increments = 3
+[[step]]
+normal_force = 0.0
+[solver]
+tolerance = 1e-7
+[output]
+fields = ["plastic_strain", "equivalent_plastic_strain", "residual_stress", "residual_displacement", "von_mises"]
+"""
+        self.assertIn(old, text)
+        return self.write("scene.toml", text.replace(old, new, 1))
+
+    def test_a_body_that_hardens_keeps_an_imprint(self):
+        self.hardening_scene()
+        self.expect(self.run_scene(), 0)
+        summary = self.summary()
+        self.assertEqual(set(summary["plan"]["stages"]), {"surface", "contact", "stress", "plastic"})
+        self.assertGreater(summary["stage_seconds"]["plastic"], 0)
+        loaded, apart = summary["increments"][-2:]
+        self.assertGreater(loaded["plastic_nodes"], 100)
+        self.assertGreater(loaded["max_equivalent_plastic_strain"], 1e-4)
+        self.assertEqual(len(loaded["max_equivalent_plastic_strain_at"]), 3)
+        self.assertIsNone(loaded["upper_max_equivalent_plastic_strain"])
+        self.assertEqual(apart["contact_nodes"], 0)
+        self.assertGreater(apart["approach"], 0)
+        for increment in summary["increments"]:
+            self.assertLessEqual(increment["certificate"]["yield"], 1e-7)
+            self.assertEqual(increment["substeps"], 1)
+        tree = xml.etree.ElementTree.parse(self.out / "fields.xdmf")
+        sizes = {d.text.split(":")[1].rsplit("/", 1)[1]: d.get("Dimensions") for d in tree.iter("DataItem")
+                 if d.get("Format") == "HDF"}
+        self.assertEqual(sizes["plastic_strain"], "14 24 24 6")
+        self.assertEqual(sizes["residual_stress"], "14 24 24 6")
+        self.assertEqual(sizes["equivalent_plastic_strain"], "14 24 24")
+        self.assertEqual(sizes["residual_displacement"], "1 24 24")
+
+    def test_identical_bodies_harden_alike(self):
+        self.hardening_scene("[upper]\nrigid = true", "[upper]\nsame_as_lower = true")
+        self.expect(self.run_scene(), 0)
+        last = self.summary()["increments"][-1]
+        self.assertGreater(last["max_equivalent_plastic_strain"], 0)
+        self.assertEqual(last["upper_max_equivalent_plastic_strain"], last["max_equivalent_plastic_strain"])
+
+    def test_bodies_that_cannot_harden_are_told_with_their_line(self):
+        cases = [
+            ("layers = 14\nlayer_thickness = 2.5e-6\n", "", [":2: [grid]", "layers"]),
+            ("hardening_modulus = 5e9\n", "", ["[lower.hardening]", "hardening_modulus is missing"]),
+            ("yield_stress = 800e6", "yield_stress = 0.0", ["yield_stress"]),
+            ('"von_mises"]', '"upper_plastic_strain"]', ["upper_plastic_strain", "[upper.hardening]"]),
+            ("nodes = [24, 24]", 'nodes = [24, 24]\nboundary = "periodic"', ["free boundary"]),
+            ("[upper]\nrigid = true", "[upper]\nrigid = true\nhardening = {law = \"perfect\", yield_stress = 1e9}",
+             ["hardening", "rigid = true"]),
+        ]
+        for old, new, words in cases:
+            with self.subTest(new):
+                self.hardening_scene(old, new)
+                self.expect(self.run_scene(), 2, "brinell: ", *words)
+                self.assertFalse(self.out.exists())
+
+    def test_plastic_strain_beyond_the_layers_stops_the_run(self):
+        self.hardening_scene("layers = 14", "layers = 5")
+        self.expect(self.run_scene(), 2, "last layer")
+        self.assertLess(len(self.summary()["increments"]), 4)  # what was solved before is kept
 
     # ------------------------------------------------------------------ height maps
 

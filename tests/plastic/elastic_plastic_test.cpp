@@ -88,8 +88,9 @@ TEST(ElasticPlastic, below_yield_is_the_elastic_contact) {
   contact::Solver elastic(bench.resources, plastic->grid, Boundary::free, plastic->gap.data(), false);
   for (const double force : {0.05, kForce, 0.03, 0.0}) {
     const PlasticSolution found = plastic->press(force);
-    const contact::Solution expected =
-        support::solve(elastic, {contact::Drive::force, force / (kModulus * plastic->grid.cell_area()), 1e-10});
+    const contact::Solution expected = support::solve(
+        elastic,
+        {contact::Drive::force, force / (kModulus * plastic->grid.cell_area()), 1e-11});  // its contacts' tolerance
     EXPECT_TRUE(found.converged);
     EXPECT_EQ(found.iterations, 1);
     EXPECT_EQ(found.contact.approach, expected.approach);
@@ -222,8 +223,7 @@ TEST(ElasticPlastic, by_force_and_by_approach_is_the_same) {
     const PlasticSolution second = by_approach->approach(first.contact.approach);
     ASSERT_TRUE(first.converged && second.converged);
     EXPECT_LE(relative(by_approach->force(second), part * kForce), 1e-6);
-    EXPECT_LE(support::largest_difference(by_force->pressure(), by_approach->pressure()),
-              1e-5 * by_force->peak());
+    EXPECT_LE(support::largest_difference(by_force->pressure(), by_approach->pressure()), 1e-5 * by_force->peak());
   }
 }
 
@@ -346,6 +346,28 @@ TEST(ElasticPlastic, takes_depths_that_yield_earlier) {
   ASSERT_TRUE(uniform->press(0.5 * kForce).converged);
   EXPECT_GT(layered->loop.body(0)->largest().value, 1.2 * uniform->loop.body(0)->largest().value);
   EXPECT_GT(layered->loop.body(0)->largest().at[2], uniform->loop.body(0)->largest().at[2]);
+}
+
+TEST(ElasticPlastic, takes_laws_without_a_yield_stress_and_without_hardening) {
+  for (const HardeningLaw& law :
+       {HardeningLaw(RambergOsgood{4320e6, 12.6, 0}), HardeningLaw(PerfectPlasticity{2e9})}) {
+    const auto pressed = indentation(lower(law));
+    for (const double part : {0.5, 1.0, 0.0}) {
+      const PlasticSolution solution = pressed->press(part * kForce);
+      EXPECT_TRUE(solution.converged);
+      EXPECT_EQ(solution.substeps, 1);
+      EXPECT_GE(solution.dissipation, 0);
+    }
+    EXPECT_GT(pressed->loop.body(0)->largest().value, 1e-3);
+  }
+}
+
+TEST(ElasticPlastic, goes_in_smaller_steps_where_a_step_does_not_converge) {
+  const auto pressed = indentation(lower(PerfectPlasticity{1.2e9}), 1e-7);
+  const PlasticSolution solution = pressed->press(1.5 * kForce);
+  EXPECT_TRUE(solution.converged);
+  EXPECT_GT(solution.substeps, 1);
+  EXPECT_LE(solution.yield, 1e-7);
 }
 
 }  // namespace
