@@ -21,6 +21,7 @@ import re
 import subprocess
 import sys
 import tempfile
+import tomllib
 
 CERTIFICATE = 1e-6
 QUANTITIES = ("approach", "contact_area", "max_pressure", "max_equivalent_plastic_strain")
@@ -122,7 +123,8 @@ def reference(program, folder, grids, elastic):
             entry[name] = quantity(value, max(tolerance, least), "refined")
         increments.append(entry)
     used = {q["source"] for i in increments for q in i.values() if isinstance(q, dict)}
-    return {"title": profile["title"], "certificate": CERTIFICATE, "hardens": True,
+    title = tomllib.loads((pathlib.Path(folder) / "scene.toml").read_text())["title"]
+    return {"title": title, "certificate": CERTIFICATE, "hardens": True,
             "sources": {k: v for k, v in SOURCES.items() if k in used}, "increments": increments}
 
 
