@@ -186,8 +186,8 @@ class Program {
 
 int main(int count, char** arguments) {
 #ifdef __GLIBC__
-  // Fields that are freed go back to the system. By default glibc keeps blocks of up to 32 MB, and boxes that grow with
-  // the plastic strain leave holes among them.
+  // Fields that are freed go back to the system. By default glibc keeps blocks of up to 32 MB, and boxes that grow
+  // with the plastic strain leave holes among them.
   mallopt(M_MMAP_THRESHOLD, 1 << 20);
 #endif
   std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is then an error of the write like a full disk
