@@ -183,7 +183,8 @@ void PlasticBody::move_to(const Region& next) {
   old_ = moved_field(old_, kAll);
   d_ = moved_field(d_, kAll);
   p_old_ = moved_field(p_old_, 1);
-  for (Buffer<double>* field : {&strain_, &mapped_, &total_, &trial_}) *field = Buffer<double>(kAll * stride_);
+  for (Buffer<double>* field : {&strain_, &mapped_, &residual_, &total_, &trial_})
+    *field = Buffer<double>(kAll * stride_);
   for (Buffer<double>* field : {&p_, &p_mapped_, &von_mises_, &yield_}) *field = Buffer<double>(stride_);
   std::copy(old_.begin(), old_.end(), strain_.begin());
   std::copy(p_old_.begin(), p_old_.end(), p_.begin());
@@ -196,6 +197,7 @@ void PlasticBody::move_to(const Region& next) {
     }
     std::fill(factor_.begin() + box.cuboids(), factor_.end(), 1.0);
   }
+  accepted_ = residual_is_current_ = displacement_is_current_ = false;
   moved_.assign(stride_ / kBlock, 1);
   active_.assign(stride_ / kBlock, 0);
   for (std::size_t block = 0; block < active_.size(); ++block) {
@@ -220,6 +222,8 @@ void PlasticBody::list_blocks() {
 /// strain = before + d, p = p_before + √(2/3 d:d), where there is an increment.
 void PlasticBody::combine() {
   const std::size_t count = blocks_.size() / kAll;
+  if (count == 0) return;
+  accepted_ = residual_is_current_ = displacement_is_current_ = false;
   backend_.arena.for_chunks(static_cast<std::int64_t>(count), 8, [&](std::int64_t begin, std::int64_t end, int) {
     for (std::int64_t at = begin; at < end; ++at) {
       const std::size_t first = static_cast<std::size_t>(blocks_[static_cast<std::size_t>(at)]) * kBlock;
@@ -238,12 +242,20 @@ void PlasticBody::combine() {
 }
 
 void PlasticBody::guess(double factor) {
+  // Without an increment the strain is what it was when it was accepted.
+  const bool same = factor == 0 && accepted_;
+  const bool residual = same && residual_is_current_, displacement = same && displacement_is_current_;
   for (const std::int64_t block : blocks_) {
     double* values = d_.data() + static_cast<std::size_t>(block) * kBlock;
     for (std::size_t i = 0; i < kBlock; ++i) values[i] *= factor;
   }
+  const bool changed = !blocks_.empty();
   combine();
   if (factor != 0) return;
+  if (changed) {
+    residual_is_current_ = residual;
+    displacement_is_current_ = displacement;
+  }
   std::fill(active_.begin(), active_.end(), std::uint8_t{0});
   std::fill(moved_.begin(), moved_.end(), std::uint8_t{1});
   blocks_.clear();
@@ -265,7 +277,10 @@ void PlasticBody::add_displacement(double weight, double* displacement) {
     surface_ = std::make_unique<EigenstrainDisplacement>(backend_, grid_, region_.box.nz, layers_.thickness,
                                                          material_.poissons_ratio);
   }
-  surface_->displacement(strain(), region_.box, region_.i0, region_.j0, displacement_.data());
+  if (!displacement_is_current_) {
+    surface_->displacement(strain(), region_.box, region_.i0, region_.j0, displacement_.data());
+    displacement_is_current_ = true;
+  }
   for (std::size_t n = 0; n < displacement_.size(); ++n) displacement[n] += weight * displacement_[n];
 }
 
@@ -296,7 +311,10 @@ YieldError PlasticBody::evaluate(const double* pressure, double unit) {
   } else {
     std::fill(trial_.begin(), trial_.end(), 0.0);
   }
-  residual_stress(arrays(total_));
+  if (!residual_is_current_) {
+    residual_stress(arrays(residual_));
+    residual_is_current_ = true;
+  }
   YieldError error = compare(trial_);
 
   TrialState state;
@@ -335,7 +353,7 @@ void PlasticBody::residual_stress(const TensorArrays& result) {
   response_->stress(strain(), result);
 }
 
-/// Total and trial stress from the residual stress in total_ and the contact's in trial; the yield condition.
+/// Total and trial stress from the residual stress and the contact's, which is in trial; the yield condition.
 YieldError PlasticBody::compare(Buffer<double>& trial) {
   const std::size_t cuboids = region_.box.cuboids();
   const auto chunks = (static_cast<std::int64_t>(cuboids) + kChunk - 1) / kChunk;
@@ -346,10 +364,11 @@ YieldError PlasticBody::compare(Buffer<double>& trial) {
     simd::StressArrays stress;
     for (std::size_t c = 0; c < kAll; ++c) {
       double* total = total_.data() + c * stride_;
+      const double* residual = residual_.data() + c * stride_;
       double* tried = trial.data() + c * stride_;
       const double* increment = d_.data() + c * stride_;
       for (std::size_t n = begin; n < end; ++n) {
-        total[n] += tried[n];
+        total[n] = residual[n] + tried[n];
         tried[n] = total[n] + twice_mu * increment[n];
       }
       stress.component[c] = total + begin;
@@ -413,6 +432,7 @@ double PlasticBody::accept() {
   std::copy(p_.begin(), p_.end(), p_old_.begin());
   std::copy(p_.begin(), p_.end(), p_mapped_.begin());
   std::fill(moved_.begin(), moved_.end(), std::uint8_t{1});
+  accepted_ = true;
   return work * region_.box.dx * region_.box.dy * region_.box.dz;
 }
 
@@ -482,7 +502,7 @@ std::size_t PlasticBody::bytes(const fft::Backend& backend, const Grid& grid, co
   const EigenstrainResponse::Bytes response = EigenstrainResponse::bytes(backend, box);
   const EigenstrainResponse::Bytes surface =
       EigenstrainDisplacement::bytes(backend, grid, layers.count, layers.thickness);
-  constexpr std::size_t kFields = 2 * 6 * kAll + 6;  // while the box grows, some twice; and the state to go back to
+  constexpr std::size_t kFields = 2 * 7 * kAll + 6;  // while the box grows, some twice; and the state to go back to
   return stress.kept_bytes + stress.work_bytes + response.spectra + response.work + surface.spectra + surface.work +
          std::max(response.generation, surface.generation) + kFields * Buffer<double>::padded_bytes(box.cuboids()) +
          2 * Buffer<double>::padded_bytes(grid.nodes());

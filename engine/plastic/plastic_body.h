@@ -150,14 +150,17 @@ class PlasticBody {
   std::unique_ptr<EigenstrainResponse> response_;    // of the box; null until needed
   std::unique_ptr<subsurface::StressField> stress_;  // of the box; null until needed
   std::unique_ptr<EigenstrainDisplacement> surface_;
-  Buffer<double> old_, strain_, d_, mapped_, total_, trial_;  // six components each
-  Buffer<double> p_old_, p_, p_mapped_, von_mises_, yield_;   // one value a cuboid
-  Buffer<double> factor_;                                     // on the yield stress; empty: 1
+  Buffer<double> old_, strain_, d_, mapped_, residual_, total_, trial_;  // six components each
+  Buffer<double> p_old_, p_, p_mapped_, von_mises_, yield_;              // one value a cuboid
+  Buffer<double> factor_;                                                // on the yield stress; empty: 1
   std::vector<double> layer_factor_;
   Buffer<double> pressure_, displacement_;  // below the box [Pa]; on the grid [m]
-  std::vector<std::uint8_t> moved_;         // by the return: see MappedState
-  std::vector<std::uint8_t> active_;        // blocks that moved or hold an increment
-  std::vector<std::int64_t> blocks_;        // active ones of all components
+  bool accepted_ = false;                   // before + d has become before, and nothing has happened since
+  bool residual_is_current_ = false;        // residual_ is that of the present strain
+  bool displacement_is_current_ = false;
+  std::vector<std::uint8_t> moved_;   // by the return: see MappedState
+  std::vector<std::uint8_t> active_;  // blocks that moved or hold an increment
+  std::vector<std::int64_t> blocks_;  // active ones of all components
 };
 
 }  // namespace brinell::plastic
