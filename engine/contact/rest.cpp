@@ -59,7 +59,8 @@ class Search {
     return placed_.x + static_cast<double>(node % placed_.grid.nx) * placed_.grid.dx;
   }
   double y(std::int64_t node) const {
-    return placed_.y + static_cast<double>(node / placed_.grid.nx) * placed_.grid.dy;
+    const std::int64_t row = node / placed_.grid.nx;
+    return placed_.y + static_cast<double>(row) * placed_.grid.dy;
   }
   double height(std::int64_t node) const { return gap_.scale * (gap_.values[node] - gap_.origin); }
 
