@@ -1,8 +1,11 @@
 // bm_convolution/<method>/<instruction set>/<precision>/<boundary>/<N>/<threads>: one convolution of N × N nodes.
+// bm_spectrum/<made or cached>/<N>: influence coefficients and their spectrum, for a grid that is new or known.
 #include <benchmark/benchmark.h>
 
 #include <string>
 
+#include "fft/plan_cache.h"
+#include "influence/spectra.h"
 #include "kernels/convolution_case.h"
 #include "kernels/textbook_convolution.h"
 
@@ -47,6 +50,21 @@ void register_size(const std::string& precision, std::int64_t n, Boundary bounda
   }
 }
 
+/// By one thread, with the best instruction set.
+void bm_spectrum(benchmark::State& state, std::int64_t n, bool cached) {
+  const parallel::Arena arena(1);
+  fft::PlanCache plans;
+  const fft::Backend backend{arena, simd::kernels(simd::supported().back()), plans};
+  const Grid grid{n, n, 1, 1};
+  const fft::Convolution<double> convolution(backend, n, n, Boundary::free);
+  influence::SpectrumCache kept(std::size_t{1} << 30), none(0);
+  for (auto _ : state) {
+    const auto spectrum =
+        influence::displacement_spectrum(cached ? kept : none, backend, convolution, grid, Boundary::free);
+    benchmark::DoNotOptimize(spectrum.get());
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -54,6 +72,12 @@ int main(int argc, char** argv) {
     for (const Boundary boundary : {Boundary::free, Boundary::periodic}) {
       register_size<double>("double", n, boundary);
       register_size<float>("float", n, boundary);
+    }
+    for (const bool cached : {false, true}) {
+      benchmark::RegisterBenchmark(
+          ("bm_spectrum/" + std::string(cached ? "cached/" : "made/") + std::to_string(n)).c_str(), bm_spectrum, n,
+          cached)
+          ->MeasureProcessCPUTime();
     }
   }
   benchmark::Initialize(&argc, argv);
