@@ -450,8 +450,9 @@ LargestPlasticStrain PlasticBody::largest() const {
   }
   if (result.cuboids == 0) return result;
   const auto n = static_cast<std::int64_t>(at);
+  const std::int64_t layer = n / (box.nx * box.ny);
   result.at = {grid_.x(region_.i0 + n % box.nx), grid_.y(region_.j0 + n / box.nx % box.ny),
-               (static_cast<double>(n / (box.nx * box.ny)) + 0.5) * box.dz};
+               (static_cast<double>(layer) + 0.5) * box.dz};
   return result;
 }
 
