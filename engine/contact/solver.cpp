@@ -237,10 +237,7 @@ Solution Solver::solve_robustly(const Load& load, double tolerance, std::int32_t
   for (std::size_t k = 0; k < rest.nodes.size(); ++k) {
     p_[static_cast<std::size_t>(rest.nodes[k])] += load.target * rest.shares[k];
   }
-  Solution again = in_metres(full_level<Real>().solve(unit(load), tolerance, max_iterations, observer));
-  again.iterations += solution.iterations;
-  again.convolutions += solution.convolutions;
-  return again;
+  return in_metres(full_level<Real>().solve(unit(load), tolerance, max_iterations, observer)).after(solution);
 }
 
 /// The approach is measured at the centre, the force acts elsewhere, so that the problem with both prescribed is not
@@ -253,13 +250,13 @@ Solution Solver::solve_tilting_approach(const Load& load, double tolerance, std:
   const auto at_force = [&](const Solution& solution) {
     return solution.approach - solution.slope_x * load.force_x - solution.slope_y * load.force_y;
   };
-  const double touch =
-      has_rest() ? origin_ + rest_of(load).approach.at(load.force_x * scale_, load.force_y * scale_) / scale_
-                 : first_touch_;
+  LinearTrend rest{(first_touch_ - origin_) * scale_, 0, 0};
+  if (has_rest()) rest = rest_of(load).approach;
+  const double touch = origin_ + rest.at(load.force_x * scale_, load.force_y * scale_) / scale_;
   Load trial = load;
   trial.drive = Drive::force;
   const double estimate =
-      scale_ * (load.target - first_touch_of(load)) * std::sqrt(static_cast<double>(grid_.nodes()));
+      scale_ * (load.target - origin_ - rest.constant / scale_) * std::sqrt(static_cast<double>(grid_.nodes()));
   trial.target = total_ > 0 ? total_ : estimate;
   double too_small = 0, too_large = HUGE_VAL;
   double last_force = 0, last_approach = 0;

@@ -23,6 +23,14 @@ struct Solution {
   Certificate certificate;
   std::int32_t iterations = 0;    // on the full grid
   std::int32_t convolutions = 0;  // on the full grid, the certificate's included
+
+  /// This one, with the work of an earlier one that it set out from counted in.
+  Solution after(const Solution& earlier) const {
+    Solution both = *this;
+    both.iterations += earlier.iterations;
+    both.convolutions += earlier.convolutions;
+    return both;
+  }
 };
 
 struct SolverPart {

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "base/elapsed.h"
 #include "base/error.h"
 
 namespace brinell::plastic {
@@ -11,10 +12,6 @@ namespace brinell::plastic {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 constexpr std::size_t kDepth = 6;  // of the acceleration
 constexpr std::int32_t kIterations = 80;
@@ -77,7 +74,7 @@ void ElasticPlastic::residual_displacement(double* result) const {
 }
 
 ElasticPlastic::State ElasticPlastic::state() const {
-  State state{{}, solver_.state(), last_was_force_, last_target_, last_change_, total_, approach_};
+  State state{{}, solver_.state(), last_was_force_, last_change_, total_, approach_};
   for (std::size_t which = 0; which < bodies_.size(); ++which) {
     if (bodies_[which] != nullptr) state.bodies[which] = bodies_[which]->state();
   }
@@ -96,7 +93,6 @@ void ElasticPlastic::restore(const State& state) {
   }
   solver_.restore(state.contact);
   last_was_force_ = state.last_was_force;
-  last_target_ = state.last_target;
   last_change_ = state.last_change;
   total_ = state.total;
   approach_ = state.approach;
@@ -119,11 +115,7 @@ PlasticSolution ElasticPlastic::reach(const contact::Load& load, contact::Observ
     solution.plastic_seconds += seconds_since(last);
     const contact::Solution contact = solver_.solve(load, contact_tolerance, settings_.max_iterations, observer);
     last = Clock::now();
-    const std::int32_t iterations = solution.contact.iterations + contact.iterations;
-    const std::int32_t convolutions = solution.contact.convolutions + contact.convolutions;
-    solution.contact = contact;
-    solution.contact.iterations = iterations;
-    solution.contact.convolutions = convolutions;
+    solution.contact = contact.after(solution.contact);
 
     for_bodies([&](PlasticBody& body) {
       if (body.cover(contact_box())) size = 0;
@@ -185,13 +177,8 @@ PlasticSolution ElasticPlastic::advance(const contact::Load& load, contact::Obse
       const double ratio = last_was_force_ == force && last_change_ != 0 ? change / last_change_ : 0;
       for_bodies([&](PlasticBody& body) { body.guess(std::clamp(ratio, 0.0, kMostExtrapolation)); });
       const PlasticSolution one = reach(step, observer);
-      const std::int32_t iterations = solution.iterations + one.iterations;
-      const std::int32_t contact_iterations = solution.contact.iterations + one.contact.iterations;
-      const std::int32_t convolutions = solution.contact.convolutions + one.contact.convolutions;
-      solution.contact = one.contact;
-      solution.contact.iterations = contact_iterations;
-      solution.contact.convolutions = convolutions;
-      solution.iterations = iterations;
+      solution.contact = one.contact.after(solution.contact);
+      solution.iterations += one.iterations;
       solution.yield = one.yield;
       solution.plastic_seconds += one.plastic_seconds;
       if (!one.converged && halvings < kHalvings) {
@@ -207,7 +194,6 @@ PlasticSolution ElasticPlastic::advance(const contact::Load& load, contact::Obse
         if (!body.region().empty()) solution.dissipation += (identical_ ? 2 : 1) * body.accept();
       });
       last_was_force_ = force;
-      last_target_ = step.target;
       last_change_ = change;
       total_ = one.contact.total;
       approach_ = one.contact.approach;

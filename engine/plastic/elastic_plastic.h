@@ -76,7 +76,7 @@ class ElasticPlastic {
     std::array<std::optional<PlasticBody::State>, 2> bodies;
     contact::Solver::State contact;
     bool last_was_force = true;
-    double last_target = 0, last_change = 0;
+    double last_change = 0;
     double total = 0, approach = 0;
   };
   State state() const;
@@ -102,7 +102,7 @@ class ElasticPlastic {
 
   // Of the last solution:
   bool last_was_force_ = true;
-  double last_target_ = 0, last_change_ = 0;
+  double last_change_ = 0;
   double total_ = 0, approach_ = 0;
 };
 

@@ -33,6 +33,12 @@ constexpr double kNegligible = 1e-5;
 constexpr double kGrowth = 0.17;
 constexpr std::int64_t kLeastGrowth = 3;
 
+Buffer<double> copy_of(const Buffer<double>& field) {
+  auto result = Buffer<double>::uninitialised(field.size());
+  std::copy(field.begin(), field.end(), result.begin());
+  return result;
+}
+
 double square(double value) {
   return value * value;
 }
@@ -315,7 +321,8 @@ YieldError PlasticBody::evaluate(const double* pressure, double unit) {
     residual_stress(arrays(residual_));
     residual_is_current_ = true;
   }
-  YieldError error = compare(trial_);
+  YieldError error;
+  error.yield = try_stress();
 
   TrialState state;
   state.count = box.cuboids();
@@ -337,7 +344,7 @@ YieldError PlasticBody::evaluate(const double* pressure, double unit) {
     more = true;
   }
   if (more) list_blocks();
-  error.flow = distance_of_flow().flow;
+  error.flow = distance_of_flow();
   return error;
 }
 
@@ -353,8 +360,8 @@ void PlasticBody::residual_stress(const TensorArrays& result) {
   response_->stress(strain(), result);
 }
 
-/// Total and trial stress from the residual stress and the contact's, which is in trial; the yield condition.
-YieldError PlasticBody::compare(Buffer<double>& trial) {
+/// Total and trial stress from the residual stress and the contact's, which is in trial_; YieldError::yield.
+double PlasticBody::try_stress() {
   const std::size_t cuboids = region_.box.cuboids();
   const auto chunks = (static_cast<std::int64_t>(cuboids) + kChunk - 1) / kChunk;
   std::vector<double> worst(static_cast<std::size_t>(chunks));
@@ -365,7 +372,7 @@ YieldError PlasticBody::compare(Buffer<double>& trial) {
     for (std::size_t c = 0; c < kAll; ++c) {
       double* total = total_.data() + c * stride_;
       const double* residual = residual_.data() + c * stride_;
-      double* tried = trial.data() + c * stride_;
+      double* tried = trial_.data() + c * stride_;
       const double* increment = d_.data() + c * stride_;
       for (std::size_t n = begin; n < end; ++n) {
         total[n] = residual[n] + tried[n];
@@ -385,10 +392,11 @@ YieldError PlasticBody::compare(Buffer<double>& trial) {
     }
     worst[begin / static_cast<std::size_t>(kChunk)] = most;
   });
-  return {*std::max_element(worst.begin(), worst.end()), 0};
+  return *std::max_element(worst.begin(), worst.end());
 }
 
-YieldError PlasticBody::distance_of_flow() const {
+/// YieldError::flow.
+double PlasticBody::distance_of_flow() const {
   double most = 0;
   const std::size_t count = blocks_.size() / kAll;
   for (std::size_t at = 0; at < count; ++at) {
@@ -401,7 +409,7 @@ YieldError PlasticBody::distance_of_flow() const {
       most = std::max(most, sum / square(yield_[n]));
     }
   }
-  return {0, 2 * shear_modulus_ * std::sqrt(1.5 * most)};
+  return 2 * shear_modulus_ * std::sqrt(1.5 * most);
 }
 
 AndersonPart PlasticBody::unknowns() {
@@ -457,12 +465,7 @@ LargestPlasticStrain PlasticBody::largest() const {
 }
 
 PlasticBody::State PlasticBody::state() const {
-  const auto copy = [](const Buffer<double>& field) {
-    auto result = Buffer<double>::uninitialised(field.size());
-    std::copy(field.begin(), field.end(), result.begin());
-    return result;
-  };
-  return {region_, copy(old_), copy(d_), copy(p_old_)};
+  return {region_, copy_of(old_), copy_of(d_), copy_of(p_old_)};
 }
 
 void PlasticBody::restore(const State& state) {
@@ -473,14 +476,9 @@ void PlasticBody::restore(const State& state) {
     active_.clear();
     return;
   }
-  const auto copy = [](const Buffer<double>& field) {
-    auto result = Buffer<double>::uninitialised(field.size());
-    std::copy(field.begin(), field.end(), result.begin());
-    return result;
-  };
-  old_ = copy(state.strain);
-  d_ = copy(state.increment);
-  p_old_ = copy(state.equivalent);
+  old_ = copy_of(state.strain);
+  d_ = copy_of(state.increment);
+  p_old_ = copy_of(state.equivalent);
   const bool same = region_ == state.region;
   std::unique_ptr<EigenstrainResponse> response = std::move(response_);
   std::unique_ptr<subsurface::StressField> stress = std::move(stress_);

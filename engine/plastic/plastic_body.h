@@ -132,8 +132,8 @@ class PlasticBody {
   TensorArrays arrays(Buffer<double>& field) const;
   void move_to(const Region& region);
   void combine();
-  YieldError compare(Buffer<double>& trial);
-  YieldError distance_of_flow() const;
+  double try_stress();
+  double distance_of_flow() const;
   void list_blocks();
   bool flows(std::size_t n) const { return p_mapped_[n] > p_old_[n] || p_[n] > p_old_[n]; }
 

@@ -13,7 +13,7 @@ namespace brinell::scene {
 namespace {
 
 constexpr char kMagic[8] = {'B', 'R', 'N', 'R', 'U', 'N', '\0', '\0'};
-constexpr std::uint32_t kVersion = 4;  // of the layout below
+constexpr std::uint32_t kVersion = 5;  // of the layout below
 constexpr std::uint32_t kByteOrder = 0x01020304;
 
 [[noreturn]] void damaged(const std::string& why) {
@@ -108,7 +108,6 @@ void trace_members(P& point, const Visit& visit) {
 template <class S, class Visit>
 void plastic_members(S& state, const Visit& visit) {
   visit(state.last_was_force);
-  visit(state.last_target);
   visit(state.last_change);
   visit(state.total);
   visit(state.approach);

@@ -4,16 +4,13 @@
 #include <cmath>
 #include <limits>
 
+#include "base/elapsed.h"
 #include "base/error.h"
 #include "surface/shapes.h"
 
 namespace brinell::scene {
 
 namespace {
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 struct PressureSums {
   double nodes = 0;
