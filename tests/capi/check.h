@@ -102,4 +102,17 @@ static inline brn_engine *plain_engine(int32_t threads) {
   return engine;
 }
 
+static inline brn_run *start(brn_engine *engine, brn_scene *scene) {
+  brn_run *run = NULL;
+  CHECK_STATUS(BRN_OK, brn_run_create(engine, scene, &run));
+  return run;
+}
+
+static inline brn_increment increment_of(brn_run *run, int32_t index) {
+  brn_increment result;
+  brn_increment_init(&result);
+  CHECK_STATUS(BRN_OK, brn_run_get_increment(run, index, &result));
+  return result;
+}
+
 #endif

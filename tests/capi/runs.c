@@ -7,19 +7,6 @@
 
 enum { n = 32, nodes = n * n };
 
-static brn_run *start(brn_engine *engine, brn_scene *scene) {
-  brn_run *run = NULL;
-  CHECK_STATUS(BRN_OK, brn_run_create(engine, scene, &run));
-  return run;
-}
-
-static brn_increment increment_of(brn_run *run, int32_t index) {
-  brn_increment result;
-  brn_increment_init(&result);
-  CHECK_STATUS(BRN_OK, brn_run_get_increment(run, index, &result));
-  return result;
-}
-
 static void the_plan_is_known_before_the_run(void) {
   brn_engine *engine = plain_engine(1);
   brn_scene *scene = sphere_scene(n, 2);

@@ -22,12 +22,6 @@ static brn_subsurface equal_layers(const int32_t *fields, size_t count) {
   return wanted;
 }
 
-static brn_run *start(brn_engine *engine, brn_scene *scene) {
-  brn_run *run = NULL;
-  CHECK_STATUS(BRN_OK, brn_run_create(engine, scene, &run));
-  return run;
-}
-
 static brn_increment last_of(brn_run *run) {
   brn_increment result;
   brn_increment_init(&result);

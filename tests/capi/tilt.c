@@ -49,19 +49,6 @@ static void add(brn_scene *scene, brn_step step) {
   CHECK_STATUS(BRN_OK, brn_scene_add_step(scene, &step));
 }
 
-static brn_run *start(brn_engine *engine, brn_scene *scene) {
-  brn_run *run = NULL;
-  CHECK_STATUS(BRN_OK, brn_run_create(engine, scene, &run));
-  return run;
-}
-
-static brn_increment increment_of(brn_run *run, int32_t index) {
-  brn_increment result;
-  brn_increment_init(&result);
-  CHECK_STATUS(BRN_OK, brn_run_get_increment(run, index, &result));
-  return result;
-}
-
 static void field_of(brn_run *run, int32_t field, double *values) {
   size_t count = 0;
   CHECK_STATUS(BRN_OK, brn_run_get_field(run, field, values, nodes, &count));

@@ -13,6 +13,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "support/legendre_rule.h"
+
 namespace brinell::reference {
 
 using Long = long double;
@@ -70,24 +72,6 @@ inline std::array<Graded, 3> mindlin_tangential(const Graded& x, const Graded& y
 
 class MindlinQuadrature {
  public:
-  MindlinQuadrature() {
-    for (int k = 0; k < kNodes; ++k) {
-      Long t = -std::cos(std::numbers::pi_v<Long> * (k + 0.75L) / (kNodes + 0.5L)), slope = 0;
-      for (int step = 0; step < 10; ++step) {
-        Long previous = 1, value = t;
-        for (int n = 2; n <= kNodes; ++n) {
-          const Long next = ((2 * n - 1) * t * value - (n - 1) * previous) / n;
-          previous = value;
-          value = next;
-        }
-        slope = kNodes * (t * value - previous) / (t * t - 1);
-        t -= value / slope;
-      }
-      node_[static_cast<std::size_t>(k)] = t;
-      weight_[static_cast<std::size_t>(k)] = 2 / ((1 - t * t) * slope * slope);
-    }
-  }
-
   struct Response {
     std::array<std::array<Long, 6>, 6> stress{};  // per 2 mu, [stress][strain], xx yy zz yz xz xy
     std::array<Long, 6> displacement{};           // along z
@@ -168,14 +152,14 @@ class MindlinQuadrature {
       for (std::size_t l = 0; l < kNodes; ++l) {
         std::array<Long, 3> source{};
         source[face.axis] = centre(face.axis) + face.position;
-        source[u] = centre(u) + (panel.left + panel.right + width * node_[k]) / 2;
-        source[v] = centre(v) + (panel.low + panel.high + height * node_[l]) / 2;
+        source[u] = centre(u) + (panel.left + panel.right + width * rule_.node[k]) / 2;
+        source[v] = centre(v) + (panel.low + panel.high + height * rule_.node[l]) / 2;
         const Graded x(face.at[0] - source[0], 0), y(face.at[1] - source[1], 1), z(face.at[2], 2);
         const auto along_x = mindlin_tangential(x, y, z, source[2], face.nu);
         const auto turned = mindlin_tangential(y, x, z, source[2], face.nu);
         const auto along_z = mindlin_normal(x, y, z, source[2], face.nu);
         const std::array<Graded, 3> along_y{turned[1], turned[0], turned[2]};
-        const Graded weight = face.sign * weight_[k] * weight_[l] * width * height / 4;
+        const Graded weight = face.sign * rule_.weight[k] * rule_.weight[l] * width * height / 4;
         for (std::size_t i = 0; i < 3; ++i) {
           sum[i][0] = sum[i][0] + weight * along_x[i];
           sum[i][1] = sum[i][1] + weight * along_y[i];
@@ -185,7 +169,7 @@ class MindlinQuadrature {
     }
   }
 
-  std::array<Long, kNodes> node_{}, weight_{};
+  LegendreRule<kNodes> rule_;
 };
 
 }  // namespace brinell::reference

@@ -9,6 +9,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "support/legendre_rule.h"
+
 namespace brinell::reference {
 
 using Long = long double;
@@ -47,24 +49,6 @@ inline Six tangential_force(Long x, Long y, Long z, Long nu) {
 
 class StressQuadrature {
  public:
-  StressQuadrature() {
-    for (int k = 0; k < kNodes; ++k) {
-      Long t = -std::cos(std::numbers::pi_v<Long> * (k + 0.75L) / (kNodes + 0.5L)), slope = 0;
-      for (int step = 0; step < 10; ++step) {
-        Long previous = 1, value = t;
-        for (int n = 2; n <= kNodes; ++n) {
-          const Long next = ((2 * n - 1) * t * value - (n - 1) * previous) / n;
-          previous = value;
-          value = next;
-        }
-        slope = kNodes * (t * value - previous) / (t * t - 1);
-        t -= value / slope;
-      }
-      node_[k] = t;
-      weight_[k] = 2 / ((1 - t * t) * slope * slope);
-    }
-  }
-
   /// Stress at (x, y, z), z > 0, under a unit traction on |ξ| <= a, |η| <= b: 0 pressure, 1 along x, 2 along y.
   Six operator()(int traction, Long x, Long y, Long z, Long a, Long b, Long nu) const {
     Six sum{};
@@ -98,14 +82,15 @@ class StressQuadrature {
     }
     for (int k = 0; k < kNodes; ++k) {
       for (int l = 0; l < kNodes; ++l) {
-        const Long to_x = x - (left + right + width * node_[k]) / 2, to_y = y - (low + high + height * node_[l]) / 2;
+        const Long to_x = x - (left + right + width * rule_.node[k]) / 2,
+                   to_y = y - (low + high + height * rule_.node[l]) / 2;
         const Six point = traction == 0 ? normal_force(to_x, to_y, z, nu) : tangential_force(to_x, to_y, z, nu);
-        for (int c = 0; c < 6; ++c) sum[c] += weight_[k] * weight_[l] * width * height / 4 * point[c];
+        for (int c = 0; c < 6; ++c) sum[c] += rule_.weight[k] * rule_.weight[l] * width * height / 4 * point[c];
       }
     }
   }
 
-  std::array<Long, kNodes> node_{}, weight_{};
+  LegendreRule<kNodes> rule_;
 };
 
 }  // namespace brinell::reference
