@@ -11,21 +11,19 @@ namespace brinell::contact {
 
 namespace {
 
-// A node that enters the contact gets this fraction of the mean pressure: in contact, but without effect.
-constexpr double kSeed = 1e-30;
-// A node enters the contact when it penetrates by more than this fraction of the mean error in contact, weighted by
-// the pressure; less may be that error alone, and go with it.
+// A node without pressure enters the contact when it penetrates by more than this fraction of the mean error in
+// contact, weighted by the pressure; less may be that error alone, and go with it.
 constexpr double kEnterBeyond = 0.5;
-// Tension is clipped when the displacement that it could cause exceeds this fraction of the present error.
-constexpr double kTensionToError = 0.2;
-// Errors above this are all the same: the set of nodes in contact is not yet known.
-constexpr double kLargeError = 0.05;
+// A node leaves the contact when its pressure is below this fraction of what its gap would take to close by itself:
+// with a tenth of it, and with ten times, the set of nodes is found later.
+constexpr double kLeaveBelow = 0.07;
 // The preconditioner follows the contact when this fraction of its nodes has changed.
 constexpr double kAdaptAfter = 0.02;
-// Conjugacy is given up when one iteration changes this fraction of the nodes in contact.
-constexpr double kRestartAfter = 0.1;
-// Rises of the energy, each after a fresh convolution, until a part of the preconditioner is given up.
-constexpr int kRises = 3;
+// The length of the next direction is what the last step would have wanted, within these bounds; where the
+// preconditioner were the compliance's inverse it would be one.
+constexpr double kShortest = 0.3, kLongest = 1;
+// Longest step, in directions.
+constexpr double kLongestStep = 2;
 // Iterations without a better certificate until the level is given up: round-off has been reached.
 constexpr int kPatience = 150;
 // Attempts to find where the factor that makes a pressure meet its moments is positive.
@@ -136,78 +134,88 @@ void Level<Real>::refresh(LevelResult& result) {
   if (load_.drive == Drive::approach) {
     passes_.clip({1, 0, 0}, fields_.p);
   } else if (!meet_load()) {
+    passes_.open_contact();
     add_uniform_pressure();
     meet_load();
   }
   exact_.apply(fields_.p, fields_.g);
   ++result.convolutions;
   const RefreshTotals fresh = passes_.refresh(gap_, fields_.p, fields_.g);
-  sums_ = {fresh.active, fresh.load, fresh.gap, 0};
-  pressure_ = {fresh.load.one, fresh.load.x, fresh.load.y};
-  const double mean_pressure = pressure_.one / static_cast<double>(placed_.grid.nodes());
+  sums_ = {fresh.load, fresh.gap, 0};
+  const double mean_pressure = fresh.load.one / static_cast<double>(placed_.grid.nodes());
   displacement_ = std::max(fresh.displacement, self_compliance_ * mean_pressure);
-  energy_ = fresh.energy;
-  if (freedom_ != Freedom::linear) {  // the work of what is prescribed
-    energy_ -= dot(prescribed_approach(load_), pressure_);
-  }
+}
+
+template <class Real>
+PlaneSums Level<Real>::pressure() const {
+  return {sums_.load.one, sums_.load.x, sums_.load.y};
 }
 
 template <class Real>
 Certificate Level<Real>::estimate(const simd::ResidualSums& residual) const {
-  return certificate_of({pressure_, displacement_, residual.depth, residual.complementarity,
+  return certificate_of({pressure(), displacement_, residual.depth, residual.complementarity,
                          self_compliance_ * std::max(0.0, sums_.tension)},
                         load_, placed_.grid);
+}
+
+/// z, preconditioned, becomes part of the next direction: returns the slope of its free part.
+template <class Real>
+double Level<Real>::redirect(double beta, const LinearTrend& trend_v, double scale, const LinearTrend& trend_z) {
+  const DirectionTotals next = passes_.redirect(beta, trend_v, scale, trend_z, fields_.p, z_.data(), v_.data());
+  LinearTrend shift;
+  if (freedom_ != Freedom::none && next.free.one > 0) {
+    const PlaneSums missing{load_.target - next.load.one, load_.target * load_.force_x - next.load.x,
+                            load_.target * load_.force_y - next.load.y};
+    shift = fit(freedom_, next.free, missing, {}, kOnePoint);
+  }
+  return passes_.balance(shift, approach_, fields_.p, fields_.g, v_.data());
 }
 
 template <class Real>
 void Level<Real>::correct_start(const Load& load) {
   prescribe(load);
+  passes_.open_contact();
   const RefreshTotals start = passes_.refresh(gap_, fields_.p, fields_.g);
-  if (start.active == 0) return;
+  if (!(start.load.one > 0)) return;
   approach_ = fit(freedom_, start.load, start.gap, approach_, kOnePoint);
   passes_.residual(approach_, 0, 0, fields_.p, fields_.g, z_.data());
   preconditioner_.apply_local(z_.data());
-  const DirectionTotals sums = passes_.correlate(fields_.p, z_.data(), z_.data(), z_.data());
-  passes_.correct(fit(freedom_, sums.active, sums.z, {}, kOnePoint), fields_.p, z_.data());
+  const CorrelationTotals sums = passes_.correlate(z_.data(), v_.data(), q_.data());
+  redirect(0, {}, 1, fit(freedom_, sums.active, sums.z, {}, kOnePoint));
+  passes_.advance(1, fields_.p, v_.data(), fields_.g, v_.data());  // the displacement is made anew from this pressure
 }
 
 template <class Real>
 LevelResult Level<Real>::solve(const Load& load, double tolerance, std::int32_t max_iterations, Observer observer) {
   LevelResult result;
   prescribe(load);
-  const double nodes = static_cast<double>(placed_.grid.nodes());
+  passes_.open_contact();
   refresh(result);
   preconditioner_.treat_large_scales(true);
 
+  const double stiffness = kLeaveBelow / self_compliance_;
   bool fresh = true;
   bool adapted = false;
   bool conjugate = false;
   bool preconditioned = true;
-  int rises = 0;
   int idle = 0;
-  double changed = 0;        // nodes that entered or left since the last direction
-  double since_adapted = 0;  // and since the preconditioner was adapted
-  double last_energy = std::numeric_limits<double>::infinity();
+  double since_adapted = 0;  // nodes that entered or left since the preconditioner was adapted
+  double length = kLongest;
   double best = std::numeric_limits<double>::infinity();
   double fresh_error = best;  // as of the last fresh convolution
-  double in_contact = sums_.active;
-  double noise = 0;  // penetration that does not count
+  double noise = 0;           // penetration that does not count
 
   while (true) {
     if (sums_.load.one > 0) approach_ = fit(freedom_, sums_.load, sums_.gap, approach_, kOnePoint);
-    const double seed = kSeed * std::max(pressure_.one / nodes, std::numeric_limits<double>::min() / kSeed);
-    simd::ResidualSums residual = passes_.residual(approach_, noise, seed, fields_.p, fields_.g, z_.data());
-    changed += residual.entered + std::max(0.0, in_contact - sums_.active);
-    in_contact = residual.active;
-
-    if (pressure_.one > 0) noise = kEnterBeyond * residual.complementarity / pressure_.one;
+    simd::ResidualSums residual = passes_.residual(approach_, noise, stiffness, fields_.p, fields_.g, z_.data());
+    if (sums_.load.one > 0) noise = kEnterBeyond * residual.complementarity / sums_.load.one;
     const Certificate certificate = estimate(residual);
     if (!observer({placed_.grid, result.iterations, fresh, certificate.worst()})) {
       fail(Status::cancelled, "the progress callback asked to stop");
     }
     if (fresh) {
       result.approach = approach_;
-      result.total = pressure_.one;
+      result.total = sums_.load.one;
       result.certificate = certificate;
       result.converged = certificate.worst() <= tolerance;
       fresh_error = certificate.worst();
@@ -216,53 +224,39 @@ LevelResult Level<Real>::solve(const Load& load, double tolerance, std::int32_t 
         best = certificate.worst();
         idle = 0;
       }
-      if (result.converged || idle > kPatience || result.iterations >= max_iterations || in_contact == 0)
+      if (result.converged || idle > kPatience || result.iterations >= max_iterations || residual.active == 0)
         return result;
     } else {
-      const double error = std::max(certificate.penetration, certificate.complementarity);
-      const double allowed = kTensionToError * std::min(error, kLargeError);
+      const double error = std::max({certificate.penetration, certificate.complementarity, certificate.tension});
       const bool outgrown = certificate.penetration >= 1;  // the displacement that it is relative to, by far
-      const bool overdue = outgrown || certificate.tension > allowed || idle > kPatience ||
-                           error <= std::max(tolerance, kBelieved<Real> * fresh_error) ||
-                           residual.barred > allowed * displacement_;
-      if (overdue || result.iterations >= max_iterations) {
+      if (outgrown || idle > kPatience || error <= std::max(tolerance, kBelieved<Real> * fresh_error) ||
+          result.iterations >= max_iterations) {
         refresh(result);
         fresh = true;
-        if (energy_ > last_energy + 1e-12 * std::fabs(last_energy) && error > 1e2 * tolerance) {
-          conjugate = false;
-          if (++rises % kRises == 0) {
-            preconditioned = rises < 2 * kRises;
-            preconditioner_.treat_large_scales(false);
-          }
-        }
-        last_energy = energy_;
         continue;
       }
     }
 
-    since_adapted += changed;
-    if (preconditioned && (!adapted || since_adapted > kAdaptAfter * in_contact)) {
-      preconditioner_.adapt(passes_, fields_.p, z_.data());
-      residual = passes_.residual(approach_, noise, seed, fields_.p, fields_.g, z_.data());
+    since_adapted += residual.changed;
+    if (preconditioned && (!adapted || since_adapted > kAdaptAfter * residual.active)) {
+      preconditioner_.adapt(passes_, z_.data());
+      passes_.residual(approach_, noise, stiffness, fields_.p, fields_.g, z_.data());
       adapted = true;
       since_adapted = 0;
     }
     if (preconditioned) preconditioner_.apply(z_.data());
 
-    const DirectionTotals sums = passes_.correlate(fields_.p, z_.data(), v_.data(), q_.data());
+    const CorrelationTotals sums = passes_.correlate(z_.data(), v_.data(), q_.data());
     const LinearTrend trend_z = fit(freedom_, sums.active, sums.z, {}, kOnePoint);
     const LinearTrend trend_v = fit(freedom_, sums.active, sums.v, {}, kOnePoint);
     const double curvature_before = sums.vq - dot(trend_v, sums.q);
+    const double scale = preconditioned ? length : 1 / self_compliance_;
     double beta = 0;
-    if (conjugate && changed <= kRestartAfter * in_contact && curvature_before > 0) {
-      beta = std::max(0.0, (sums.zq - dot(trend_z, sums.q)) / curvature_before);
+    if (conjugate && curvature_before > 0) {
+      beta = scale * std::max(0.0, (sums.zq - dot(trend_z, sums.q)) / curvature_before);
     }
-    double slope = passes_.redirect(beta, trend_v, trend_z, approach_, fields_.p, fields_.g, z_.data(), v_.data());
-    if (!(slope < 0) && beta > 0) {
-      slope = passes_.redirect(0, {}, trend_z, approach_, fields_.p, fields_.g, z_.data(), v_.data());
-    }
-
-    changed = 0;
+    double slope = redirect(beta, trend_v, scale, trend_z);
+    if (!(slope < 0) && beta > 0) slope = redirect(0, {}, scale, trend_z);
 
     double step = 0;
     if (slope < 0) {
@@ -272,15 +266,18 @@ LevelResult Level<Real>::solve(const Load& load, double tolerance, std::int32_t 
         exact_.apply(v_.data(), q_.data());
       }
       ++result.convolutions;
-      const double curvature = passes_.dot(v_.data(), q_.data());
+      const double curvature = passes_.curvature(fields_.p, v_.data(), q_.data());
       if (curvature > 0) step = -slope / curvature;
     }
     ++result.iterations;
     ++idle;
     conjugate = step > 0;
-    sums_ = passes_.advance(step, fields_.p, v_.data(), fields_.g, q_.data());
+    length = std::clamp(length * step, kShortest, kLongest);
+    sums_ = passes_.advance(std::min(step, kLongestStep), fields_.p, v_.data(), fields_.g, q_.data());
     fresh = false;
-    if (step == 0) {  // a lone node, or a residual at round-off: only the entering nodes can change anything
+    if (step == 0) {  // a lone node, a residual at round-off, or no way down
+      preconditioned = preconditioned && preconditioner_.treats_large_scales();
+      preconditioner_.treat_large_scales(false);
       refresh(result);
       fresh = true;
     }
@@ -289,7 +286,8 @@ LevelResult Level<Real>::solve(const Load& load, double tolerance, std::int32_t 
 
 template <class Real>
 std::size_t Level<Real>::bytes(const fft::Backend& backend, const Grid& grid, Boundary boundary) {
-  std::size_t bytes = Preconditioner<Real>::bytes(backend, grid) + 3 * Buffer<Real>::padded_bytes(grid.nodes());
+  std::size_t bytes = Preconditioner<Real>::bytes(backend, grid) + Passes<Real>::bytes(grid) +
+                      3 * Buffer<Real>::padded_bytes(grid.nodes());
   if constexpr (std::is_same_v<Real, float>) bytes += Compliance<float>::bytes(backend, grid, boundary);
   return bytes;
 }

@@ -72,6 +72,8 @@ class Level {
   void add_uniform_pressure();
   bool meet_load();
   void refresh(LevelResult& result);
+  PlaneSums pressure() const;
+  double redirect(double beta, const LinearTrend& trend_v, double scale, const LinearTrend& trend_z);
   Certificate estimate(const simd::ResidualSums& residual) const;
 
   const parallel::Arena& arena_;
@@ -89,8 +91,6 @@ class Level {
   // Of the present state:
   Load load_;
   Freedom freedom_ = Freedom::none;
-  PlaneSums pressure_;  // of the clipped pressure
-  double energy_ = 0;
   double displacement_ = 0;  // largest, as of the last fresh convolution
   LinearTrend approach_;
   AdvanceTotals sums_;

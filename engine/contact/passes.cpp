@@ -25,15 +25,19 @@ PlaneWeights in_plane(const simd::QuadraticSums& row, double y) {
 }
 
 AdvanceTotals in_plane(const simd::AdvanceSums& row, double y) {
-  return {row.active, in_plane(row.load, y), in_plane(row.gap, y), row.tension};
+  return {in_plane(row.load, y), in_plane(row.gap, y), row.tension};
 }
 
-DirectionTotals in_plane(const simd::DirectionSums& row, double y) {
+CorrelationTotals in_plane(const simd::CorrelationSums& row, double y) {
   return {in_plane(row.active, y), in_plane(row.z, y), in_plane(row.q, y), in_plane(row.v, y), row.zq, row.vq};
 }
 
+DirectionTotals in_plane(const simd::DirectionSums& row, double y) {
+  return {in_plane(row.load, y), in_plane(row.free, y)};
+}
+
 RefreshTotals in_plane(const simd::RefreshSums& row, double y) {
-  return {row.active, in_plane(row.load, y), in_plane(row.gap, y), row.displacement, row.energy};
+  return {in_plane(row.load, y), in_plane(row.gap, y), row.displacement};
 }
 
 simd::ResidualSums in_plane(const simd::ResidualSums& row, double) {
@@ -60,13 +64,17 @@ void combine(PlaneWeights& total, const PlaneWeights& part) {
 }
 
 void combine(AdvanceTotals& total, const AdvanceTotals& part) {
-  total.active += part.active;
   combine(total.load, part.load);
   combine(total.gap, part.gap);
   total.tension = std::max(total.tension, part.tension);
 }
 
 void combine(DirectionTotals& total, const DirectionTotals& part) {
+  combine(total.load, part.load);
+  combine(total.free, part.free);
+}
+
+void combine(CorrelationTotals& total, const CorrelationTotals& part) {
   combine(total.active, part.active);
   combine(total.z, part.z);
   combine(total.q, part.q);
@@ -76,18 +84,16 @@ void combine(DirectionTotals& total, const DirectionTotals& part) {
 }
 
 void combine(RefreshTotals& total, const RefreshTotals& part) {
-  total.active += part.active;
   combine(total.load, part.load);
   combine(total.gap, part.gap);
   total.displacement = std::max(total.displacement, part.displacement);
-  total.energy += part.energy;
 }
 
 void combine(simd::ResidualSums& total, const simd::ResidualSums& part) {
   total.active += part.active;
-  total.entered += part.entered;
+  total.occupied += part.occupied;
+  total.changed += part.changed;
   total.complementarity += part.complementarity;
-  total.barred = std::max(total.barred, part.barred);
   total.depth = std::max(total.depth, part.depth);
 }
 
@@ -104,8 +110,14 @@ Passes<Real>::Passes(const parallel::Arena& arena, const simd::KernelTable& kern
       kernels_(&sets_.contact),
       placed_(placed),
       nodes_(static_cast<std::int64_t>(placed.grid.nodes())),
-      in_contact_((placed.grid.nodes() + kBlock - 1) / kBlock, 1),
-      moving_(in_contact_.size(), 1) {}
+      occupied_((placed.grid.nodes() + kBlock - 1) / kBlock, 1),
+      moving_(occupied_.size(), 1) {}
+
+template <class Real>
+void Passes<Real>::open_contact() {
+  if (contact_.empty()) contact_ = Buffer<std::uint8_t>::uninitialised(static_cast<std::size_t>(nodes_));
+  std::fill(contact_.begin(), contact_.end(), std::uint8_t{1});
+}
 
 template <class Real>
 void Passes<Real>::tilting(bool tilting) {
@@ -160,54 +172,70 @@ AdvanceTotals Passes<Real>::advance(double step, double* p, const Real* v, doubl
 }
 
 template <class Real>
-simd::ResidualSums Passes<Real>::residual(const LinearTrend& approach, double noise, double seed, double* p,
-                                          const double* g, Real* z) {
-  return over_blocks<simd::ResidualSums>(
-      [&](simd::ResidualSums& totals, std::int64_t first, std::int64_t count, std::size_t block) {
-        const double before = totals.active;
-        over_stretches(first, count, totals, [&](std::int64_t i, std::size_t n, const Stretch& stretch) {
-          simd::ResidualSums part;
-          kernels_->residual(n, stretch.of(approach), noise, seed, p + i, g + i, z + i, &part);
-          return part;
-        });
-        in_contact_[block] = totals.active > before ? 1 : 0;
-      });
-}
-
-template <class Real>
-DirectionTotals Passes<Real>::correlate(const double* p, const Real* z, const Real* v, const Real* q) {
-  return over_blocks<DirectionTotals>(
-      [&](DirectionTotals& totals, std::int64_t first, std::int64_t count, std::size_t block) {
-        if (in_contact_[block] == 0) return;
-        over_stretches(first, count, totals, [&](std::int64_t i, std::size_t n, const Stretch& stretch) {
-          simd::DirectionSums part;
-          kernels_->correlate(n, stretch.places(), p + i, z + i, v + i, q + i, &part);
-          return part;
-        });
-      });
-}
-
-template <class Real>
-double Passes<Real>::redirect(double beta, const LinearTrend& trend_v, const LinearTrend& trend_z,
-                              const LinearTrend& approach, const double* p, const double* g, const Real* z, Real* v) {
-  return over_blocks<double>([&](double& total, std::int64_t first, std::int64_t count, std::size_t block) {
-    if (in_contact_[block] != 0) {
-      moving_[block] = 1;
-      over_stretches(first, count, total, [&](std::int64_t i, std::size_t n, const Stretch& stretch) {
-        return kernels_->redirect(n, beta, stretch.of(trend_v), stretch.of(trend_z), stretch.of(approach), p + i,
-                                  g + i, z + i, v + i);
-      });
-    } else if (moving_[block] != 0) {
-      std::fill_n(v + first, count, Real(0));
-      moving_[block] = 0;
-    }
+simd::ResidualSums Passes<Real>::residual(const LinearTrend& approach, double noise, double stiffness,
+                                          const double* p, const double* g, Real* z) {
+  return over_blocks<simd::ResidualSums>([&](simd::ResidualSums& totals, std::int64_t first, std::int64_t count,
+                                             std::size_t block) {
+    const double before = totals.occupied;
+    over_stretches(first, count, totals, [&](std::int64_t i, std::size_t n, const Stretch& stretch) {
+      simd::ResidualSums part;
+      kernels_->residual(n, stretch.of(approach), noise, stiffness, p + i, g + i, contact_.data() + i, z + i, &part);
+      return part;
+    });
+    occupied_[block] = totals.occupied > before ? 1 : 0;
   });
 }
 
 template <class Real>
-double Passes<Real>::dot(const Real* a, const Real* b) {
+CorrelationTotals Passes<Real>::correlate(const Real* z, const Real* v, const Real* q) {
+  return over_blocks<CorrelationTotals>(
+      [&](CorrelationTotals& totals, std::int64_t first, std::int64_t count, std::size_t block) {
+        if (occupied_[block] == 0) return;
+        over_stretches(first, count, totals, [&](std::int64_t i, std::size_t n, const Stretch& stretch) {
+          simd::CorrelationSums part;
+          kernels_->correlate(n, stretch.places(), contact_.data() + i, z + i, v + i, q + i, &part);
+          return part;
+        });
+      });
+}
+
+template <class Real>
+DirectionTotals Passes<Real>::redirect(double beta, const LinearTrend& trend_v, double scale,
+                                       const LinearTrend& trend_z, const double* p, const Real* z, Real* v) {
+  return over_blocks<DirectionTotals>(
+      [&](DirectionTotals& totals, std::int64_t first, std::int64_t count, std::size_t block) {
+        if (occupied_[block] != 0) {
+          moving_[block] = 1;
+          over_stretches(first, count, totals, [&](std::int64_t i, std::size_t n, const Stretch& stretch) {
+            simd::DirectionSums part;
+            kernels_->redirect(n, stretch.places(), beta, stretch.of(trend_v), scale, stretch.of(trend_z),
+                               contact_.data() + i, p + i, z + i, v + i, &part);
+            return part;
+          });
+        } else if (moving_[block] != 0) {
+          std::fill_n(v + first, count, Real(0));
+          moving_[block] = 0;
+        }
+      });
+}
+
+template <class Real>
+double Passes<Real>::balance(const LinearTrend& shift, const LinearTrend& approach, const double* p, const double* g,
+                             Real* v) {
   return over_blocks<double>([&](double& total, std::int64_t first, std::int64_t count, std::size_t block) {
-    if (moving_[block] != 0) total += kernels_->dot(static_cast<std::size_t>(count), a + first, b + first);
+    if (occupied_[block] == 0) return;
+    over_stretches(first, count, total, [&](std::int64_t i, std::size_t n, const Stretch& stretch) {
+      return kernels_->balance(n, stretch.of(shift), stretch.of(approach), contact_.data() + i, p + i, g + i, v + i);
+    });
+  });
+}
+
+template <class Real>
+double Passes<Real>::curvature(const double* p, const Real* v, const Real* q) {
+  return over_blocks<double>([&](double& total, std::int64_t first, std::int64_t count, std::size_t block) {
+    if (occupied_[block] == 0) return;
+    total += kernels_->curvature(static_cast<std::size_t>(count), contact_.data() + first, p + first, v + first,
+                                 q + first);
   });
 }
 
@@ -215,7 +243,7 @@ template <class Real>
 PlaneWeights Passes<Real>::carried(const LinearTrend& factor, const double* p) {
   return over_blocks<PlaneWeights>([&](PlaneWeights& totals, std::int64_t first, std::int64_t count, std::size_t) {
     over_stretches(first, count, totals, [&](std::int64_t i, std::size_t n, const Stretch& stretch) {
-      return kernels_->carried(n, stretch.places(), stretch.of(factor), p + i);
+      return kernels_->carried(n, stretch.places(), stretch.of(factor), contact_.data() + i, p + i);
     });
   });
 }
@@ -224,7 +252,7 @@ template <class Real>
 void Passes<Real>::clip(const LinearTrend& factor, double* p) {
   over_blocks<double>([&](double& none, std::int64_t first, std::int64_t count, std::size_t) {
     over_stretches(first, count, none, [&](std::int64_t i, std::size_t n, const Stretch& stretch) {
-      kernels_->clip(n, stretch.of(factor), p + i);
+      kernels_->clip(n, stretch.of(factor), contact_.data() + i, p + i);
       return 0.0;
     });
   });
@@ -242,26 +270,16 @@ RefreshTotals Passes<Real>::refresh(const UndeformedGap& h, const double* p, dou
 }
 
 template <class Real>
-void Passes<Real>::indicator(const double* p, Real* z) {
+void Passes<Real>::indicator(Real* z) {
   arena_.for_chunks(nodes_, kChunk, [&](std::int64_t begin, std::int64_t end, int) {
-    kernels_->indicator(static_cast<std::size_t>(end - begin), p + begin, z + begin);
+    kernels_->indicator(static_cast<std::size_t>(end - begin), contact_.data() + begin, z + begin);
   });
 }
 
 template <class Real>
-void Passes<Real>::conductance(const double* p, const Real* z, float* w) {
+void Passes<Real>::conductance(const Real* z, float* w) {
   arena_.for_chunks(nodes_, kChunk, [&](std::int64_t begin, std::int64_t end, int) {
-    kernels_->conductance(static_cast<std::size_t>(end - begin), p + begin, z + begin, w + begin);
-  });
-}
-
-template <class Real>
-void Passes<Real>::correct(const LinearTrend& trend_z, double* p, const Real* z) {
-  over_blocks<double>([&](double& none, std::int64_t first, std::int64_t count, std::size_t) {
-    over_stretches(first, count, none, [&](std::int64_t i, std::size_t n, const Stretch& stretch) {
-      kernels_->correct(n, stretch.of(trend_z), p + i, z + i);
-      return 0.0;
-    });
+    kernels_->conductance(static_cast<std::size_t>(end - begin), contact_.data() + begin, z + begin, w + begin);
   });
 }
 

@@ -28,24 +28,26 @@ Sums ordered_sum(const parallel::Arena& arena, std::int64_t n, std::int64_t chun
 }
 
 struct AdvanceTotals {
-  double active = 0;
   PlaneWeights load;
   PlaneSums gap;
   double tension = 0;
 };
 
-struct DirectionTotals {
+struct CorrelationTotals {
   PlaneWeights active;
   PlaneSums z, q, v;
   double zq = 0, vq = 0;
 };
 
+struct DirectionTotals {
+  PlaneSums load;
+  PlaneWeights free;
+};
+
 struct RefreshTotals {
-  double active = 0;
   PlaneWeights load;
   PlaneSums gap;
   double displacement = 0;
-  double energy = 0;
 };
 
 template <class Real>
@@ -59,33 +61,40 @@ class Passes {
   /// p += step·v, g += step·q everywhere.
   AdvanceTotals advance(double step, double* p, const Real* v, double* g, const Real* q);
 
-  /// Nodes out of contact with g < approach − noise enter with the pressure seed; z = g − approach in contact, else
-  /// 0.
-  simd::ResidualSums residual(const LinearTrend& approach, double noise, double seed, double* p, const double* g,
-                              Real* z);
+  /// The nodes in contact follow from pressure and gap; z = g − approach in contact, else 0.
+  simd::ResidualSums residual(const LinearTrend& approach, double noise, double stiffness, const double* p,
+                              const double* g, Real* z);
 
-  DirectionTotals correlate(const double* p, const Real* z, const Real* v, const Real* q);
+  CorrelationTotals correlate(const Real* z, const Real* v, const Real* q);
 
-  /// The next direction; returns its slope Σ v (g − approach).
-  double redirect(double beta, const LinearTrend& trend_v, const LinearTrend& trend_z, const LinearTrend& approach,
-                  const double* p, const double* g, const Real* z, Real* v);
+  /// The next direction.
+  DirectionTotals redirect(double beta, const LinearTrend& trend_v, double scale, const LinearTrend& trend_z,
+                           const double* p, const Real* z, Real* v);
 
-  double dot(const Real* a, const Real* b);
+  /// Shifts its free part; returns that part's slope Σ v (g − approach).
+  double balance(const LinearTrend& shift, const LinearTrend& approach, const double* p, const double* g, Real* v);
 
-  /// Of the pressure where it and the factor are positive.
+  /// Σ v q over the free part.
+  double curvature(const double* p, const Real* v, const Real* q);
+
+  /// Every node may carry pressure until the next residual. To be called before all that depends on the contact.
+  void open_contact();
+
+  /// Of the pressure in contact where it and the factor are positive.
   PlaneWeights carried(const LinearTrend& factor, const double* p);
 
-  /// Takes tension out and multiplies by the factor, or by zero where that is negative.
+  /// Takes tension out, and all that is out of contact, and multiplies by the factor, or by zero where that is
+  /// negative.
   void clip(const LinearTrend& factor, double* p);
 
   /// g: displacement on entry, deformed gap on return.
   RefreshTotals refresh(const UndeformedGap& h, const double* p, double* g);
 
-  void indicator(const double* p, Real* z);
-  void conductance(const double* p, const Real* z, float* w);
+  void indicator(Real* z);
+  void conductance(const Real* z, float* w);
 
-  /// p = max(p − (z − trend_z), 0) in contact.
-  void correct(const LinearTrend& trend_z, double* p, const Real* z);
+  /// Bytes of one.
+  static std::size_t bytes(const Grid& grid) { return Buffer<std::uint8_t>::padded_bytes(grid.nodes()); }
 
  private:
   template <class Totals, class Kernel>
@@ -102,8 +111,9 @@ class Passes {
   PlacedGrid placed_;
   bool tilting_ = false;
   std::int64_t nodes_;
-  std::vector<std::uint8_t> in_contact_;  // per block: has active nodes, as of the last residual pass
-  std::vector<std::uint8_t> moving_;      // per block: v is not all zero
+  Buffer<std::uint8_t> contact_;        // per node: in contact, as of the last residual pass; empty until needed
+  std::vector<std::uint8_t> occupied_;  // per block: has contact or pressure, as of that pass
+  std::vector<std::uint8_t> moving_;    // per block: v is not all zero
 };
 
 }  // namespace brinell::contact

@@ -98,11 +98,11 @@ void Preconditioner<Real>::for_segments(const Body& body) const {
 }
 
 template <class Real>
-void Preconditioner<Real>::adapt(Passes<Real>& passes, const double* p, Real* scratch) {
+void Preconditioner<Real>::adapt(Passes<Real>& passes, Real* scratch) {
   if (!large_scales_) return;
-  passes.indicator(p, scratch);
+  passes.indicator(scratch);
   apply_local(scratch);
-  passes.conductance(p, scratch, conductance_.data());
+  passes.conductance(scratch, conductance_.data());
 
   Eigen::VectorXd root = Eigen::VectorXd::Zero(cells_);
   for_segments([&](std::int64_t cell, std::int64_t first, std::size_t n) {

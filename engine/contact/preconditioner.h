@@ -32,8 +32,8 @@ class Preconditioner {
   Preconditioner(const Resources& resources, const Grid& grid, Boundary boundary, fft::Workspace<Real>& workspace);
   ~Preconditioner();
 
-  /// To the nodes in contact, p > 0; scratch: one field.
-  void adapt(Passes<Real>& passes, const double* p, Real* scratch);
+  /// To the nodes in contact as the passes know them; scratch: one field.
+  void adapt(Passes<Real>& passes, Real* scratch);
 
   /// z = residual, zero out of contact, on entry.
   void apply(Real* z);
@@ -43,6 +43,7 @@ class Preconditioner {
 
   /// Whether the large scales are treated; if not, they are left to the iteration.
   void treat_large_scales(bool treat) { large_scales_ = treat; }
+  bool treats_large_scales() const { return large_scales_; }
 
   static std::size_t bytes(const fft::Backend& backend, const Grid& grid);
 

@@ -1,6 +1,6 @@
 // Fused passes of the contact solver over one block of nodes. Pressure p and gap g are double; direction v, its
-// displacement q and the residual z are Real. A node is active, that is in contact, where p > 0; p < 0 is tension
-// that waits to be clipped, p = 0 is out of contact.
+// displacement q and the residual z are Real; contact is 1 at the nodes that are in contact, else 0. Among these,
+// those are free that the direction does not take all their pressure from: v > −p.
 //
 // There are two sets of them. Where the bodies may tilt, a block is a stretch of one row, what is taken off is linear
 // along it, and sums come with their first and second moments. The other set takes constants and leaves the moments
@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 namespace brinell::simd {
 
@@ -31,32 +32,34 @@ struct QuadraticSums {
 };
 
 struct AdvanceSums {
-  double active = 0;   // number of active nodes
-  QuadraticSums load;  // of p over them
-  LinearSums gap;      // of p g over them
+  QuadraticSums load;  // of p where positive
+  LinearSums gap;      // of p g where p is positive
   double tension = 0;  // largest −p, or 0
 };
 
 struct ResidualSums {
-  double active = 0;
-  double entered = 0;          // nodes that this pass put into contact
+  double active = 0;           // nodes in contact
+  double occupied = 0;         // nodes in contact or with pressure
+  double changed = 0;          // nodes that this pass put into contact or took out
   double complementarity = 0;  // Σ |p (g − approach)|
-  double barred = 0;           // largest approach − g of nodes that cannot enter before their tension is clipped
   double depth = 0;            // largest approach − g, or 0
 };
 
-struct DirectionSums {
-  QuadraticSums active;  // of 1 over active nodes
-  LinearSums z, q, v;    // over active nodes
+struct CorrelationSums {
+  QuadraticSums active;  // of 1 over nodes in contact
+  LinearSums z, q, v;    // over nodes in contact
   double zq = 0, vq = 0;
 };
 
+struct DirectionSums {
+  LinearSums load;     // of p + v
+  QuadraticSums free;  // of 1 over free nodes
+};
+
 struct RefreshSums {
-  double active = 0;
-  QuadraticSums load;       // of p over active nodes
-  LinearSums gap;           // of p g over active nodes
+  QuadraticSums load;       // of p where positive
+  LinearSums gap;           // of p g where p is positive
   double displacement = 0;  // largest |u|
-  double energy = 0;        // Σ p (u/2 + scale·(h − origin))
 };
 
 template <class Real>
@@ -65,45 +68,47 @@ struct ContactKernels {
   void (*advance)(std::size_t n, Line x, double step, double* p, const Real* v, double* g, const Real* q,
                   AdvanceSums* sums);
 
-  /// p = seed where p = 0 and g < approach − noise; then z = g − approach where active, else 0.
-  void (*residual)(std::size_t n, Line approach, double noise, double seed, double* p, const double* g, Real* z,
-                   ResidualSums* sums);
+  /// In contact is where p > stiffness·r, r = g − approach, to which noise is added where there is no pressure;
+  /// z = r in contact, else 0.
+  void (*residual)(std::size_t n, Line approach, double noise, double stiffness, const double* p, const double* g,
+                   std::uint8_t* contact, Real* z, ResidualSums* sums);
 
   /// Sums that give the next direction.
-  void (*correlate)(std::size_t n, Line x, const double* p, const Real* z, const Real* v, const Real* q,
-                    DirectionSums* sums);
+  void (*correlate)(std::size_t n, Line x, const std::uint8_t* contact, const Real* z, const Real* v, const Real* q,
+                    CorrelationSums* sums);
 
-  /// v = beta·(v − trend_v) − (z − trend_z) where active, else 0. Returns Σ v (g − approach).
-  double (*redirect)(std::size_t n, double beta, Line trend_v, Line trend_z, Line approach, const double* p,
-                     const double* g, const Real* z, Real* v);
+  /// v = max(beta·(v − trend_v) − scale·(z − trend_z), −p) in contact, else −p.
+  void (*redirect)(std::size_t n, Line x, double beta, Line trend_v, double scale, Line trend_z,
+                   const std::uint8_t* contact, const double* p, const Real* z, Real* v, DirectionSums* sums);
 
-  /// Σ a·b.
-  double (*dot)(std::size_t n, const Real* a, const Real* b);
+  /// v = max(v + shift, −p) where free. Returns Σ v (g − approach) over what is free then.
+  double (*balance)(std::size_t n, Line shift, Line approach, const std::uint8_t* contact, const double* p,
+                    const double* g, Real* v);
 
-  /// Sums of p over nodes where p and factor are positive.
-  QuadraticSums (*carried)(std::size_t n, Line x, Line factor, const double* p);
+  /// Σ v·q over free nodes.
+  double (*curvature)(std::size_t n, const std::uint8_t* contact, const double* p, const Real* v, const Real* q);
 
-  /// p = max(p, 0)·max(factor, 0).
-  void (*clip)(std::size_t n, Line factor, double* p);
+  /// Sums of p over nodes in contact where p and factor are positive.
+  QuadraticSums (*carried)(std::size_t n, Line x, Line factor, const std::uint8_t* contact, const double* p);
+
+  /// p = max(p, 0)·max(factor, 0) in contact, else 0.
+  void (*clip)(std::size_t n, Line factor, const std::uint8_t* contact, double* p);
 
   /// On entry g holds the displacement u of p; g = u + scale·(h − origin).
   void (*refresh)(std::size_t n, Line x, double scale, double origin, const double* h, const double* p, double* g,
                   RefreshSums* sums);
 
-  /// z = 1 where active, else 0.
-  void (*indicator)(std::size_t n, const double* p, Real* z);
+  /// z = contact.
+  void (*indicator)(std::size_t n, const std::uint8_t* contact, Real* z);
 
-  /// w = z where active and z > 0, else 0.
-  void (*conductance)(std::size_t n, const double* p, const Real* z, float* w);
+  /// w = z in contact where z > 0, else 0.
+  void (*conductance)(std::size_t n, const std::uint8_t* contact, const Real* z, float* w);
 
   /// Σ w·z.
   double (*weigh)(std::size_t n, const float* w, const Real* z);
 
   /// z −= t·w.
   void (*relax)(std::size_t n, double t, const float* w, Real* z);
-
-  /// p = max(p − (z − trend_z), 0) where active.
-  void (*correct)(std::size_t n, Line trend_z, double* p, const Real* z);
 };
 
 }  // namespace brinell::simd

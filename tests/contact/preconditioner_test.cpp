@@ -56,6 +56,14 @@ Eigen::MatrixXd matrix_of(Preconditioner<Real>& preconditioner, const Nodes& nod
   return matrix;
 }
 
+/// Where p > 0.
+template <class Real>
+void put_in_contact(Passes<Real>& passes, const std::vector<double>& p, Buffer<Real>& scratch) {
+  const Buffer<double> no_gap(p.size());
+  passes.open_contact();
+  passes.residual({}, 0, 0, p.data(), no_gap.data(), scratch.data());
+}
+
 template <class Real>
 class PreconditionerIn : public testing::Test {};
 using Precisions = testing::Types<double, float>;
@@ -77,7 +85,8 @@ TYPED_TEST(PreconditionerIn, is_symmetric_and_positive_definite) {
         Buffer<Real> scratch(grid.nodes());
         for (const bool large_scales : {true, false}) {
           preconditioner.treat_large_scales(large_scales);
-          preconditioner.adapt(passes, p.data(), scratch.data());
+          put_in_contact(passes, p, scratch);
+          preconditioner.adapt(passes, scratch.data());
           const Eigen::MatrixXd matrix = matrix_of(preconditioner, nodes, grid.nodes());
           const double largest = matrix.cwiseAbs().maxCoeff();
           // Transforms of a few hundred points, each way: some tens of roundings of the largest coefficient.
@@ -106,7 +115,8 @@ TEST(Preconditioner, times_the_compliance_is_well_conditioned) {
     Preconditioner<double> preconditioner(bench.resources, grid, Boundary::free, workspace);
     Passes<double> passes(bench.arena, bench.resources.backend.kernels, PlacedGrid::centred(grid));
     Buffer<double> scratch(grid.nodes());
-    preconditioner.adapt(passes, p.data(), scratch.data());
+    put_in_contact(passes, p, scratch);
+    preconditioner.adapt(passes, scratch.data());
     const Eigen::MatrixXd inverse = matrix_of(preconditioner, nodes, grid.nodes());
     const auto count = static_cast<Eigen::Index>(nodes.size());
     Eigen::MatrixXd compliance(count, count);
