@@ -19,11 +19,15 @@ constexpr double kEnterBeyond = 0.5;
 constexpr double kLeaveBelow = 0.07;
 // The preconditioner follows the contact when this fraction of its nodes has changed.
 constexpr double kAdaptAfter = 0.02;
+// Conjugacy is given up when one iteration changes this fraction of the nodes in contact.
+constexpr double kRestartAfter = 0.3;
 // The length of the next direction is what the last step would have wanted, within these bounds; where the
 // preconditioner were the compliance's inverse it would be one.
 constexpr double kShortest = 0.3, kLongest = 1;
-// Longest step, in directions.
+// Steps longer than so many directions are taken only if the tension that they cause could displace by no more than
+// this fraction of the present error.
 constexpr double kLongestStep = 2;
+constexpr double kTensionToError = 0.2;
 // Iterations without a better certificate until the level is given up: round-off has been reached.
 constexpr int kPatience = 150;
 // Attempts to find where the factor that makes a pressure meet its moments is positive.
@@ -208,7 +212,7 @@ LevelResult Level<Real>::solve(const Load& load, double tolerance, std::int32_t 
   while (true) {
     if (sums_.load.one > 0) approach_ = fit(freedom_, sums_.load, sums_.gap, approach_, kOnePoint);
     simd::ResidualSums residual = passes_.residual(approach_, noise, stiffness, fields_.p, fields_.g, z_.data());
-    if (sums_.load.one > 0) noise = kEnterBeyond * residual.complementarity / sums_.load.one;
+    noise = sums_.load.one > 0 ? kEnterBeyond * residual.complementarity / sums_.load.one : 0;
     const Certificate certificate = estimate(residual);
     if (!observer({placed_.grid, result.iterations, fresh, certificate.worst()})) {
       fail(Status::cancelled, "the progress callback asked to stop");
@@ -224,7 +228,7 @@ LevelResult Level<Real>::solve(const Load& load, double tolerance, std::int32_t 
         best = certificate.worst();
         idle = 0;
       }
-      if (result.converged || idle > kPatience || result.iterations >= max_iterations || residual.active == 0)
+      if (result.converged || idle > kPatience || result.iterations >= max_iterations || residual.occupied == 0)
         return result;
     } else {
       const double error = std::max({certificate.penetration, certificate.complementarity, certificate.tension});
@@ -252,14 +256,14 @@ LevelResult Level<Real>::solve(const Load& load, double tolerance, std::int32_t 
     const double curvature_before = sums.vq - dot(trend_v, sums.q);
     const double scale = preconditioned ? length : 1 / self_compliance_;
     double beta = 0;
-    if (conjugate && curvature_before > 0) {
+    if (conjugate && residual.changed <= kRestartAfter * residual.active && curvature_before > 0) {
       beta = scale * std::max(0.0, (sums.zq - dot(trend_z, sums.q)) / curvature_before);
     }
     double slope = redirect(beta, trend_v, scale, trend_z);
     if (!(slope < 0) && beta > 0) slope = redirect(0, {}, scale, trend_z);
 
     double step = 0;
-    if (slope < 0) {
+    if (slope < 0 || residual.active == 0) {
       if constexpr (std::is_same_v<Real, float>) {
         fast_->apply(v_.data(), q_.data());
       } else {
@@ -268,12 +272,17 @@ LevelResult Level<Real>::solve(const Load& load, double tolerance, std::int32_t 
       ++result.convolutions;
       const double curvature = passes_.curvature(fields_.p, v_.data(), q_.data());
       if (curvature > 0) step = -slope / curvature;
+      if (residual.active == 0) step = 1;  // all pressure goes
     }
     ++result.iterations;
     ++idle;
     conjugate = step > 0;
     length = std::clamp(length * step, kShortest, kLongest);
-    sums_ = passes_.advance(std::min(step, kLongestStep), fields_.p, v_.data(), fields_.g, q_.data());
+    sums_ = passes_.advance(step, fields_.p, v_.data(), fields_.g, q_.data());
+    if (step > kLongestStep &&
+        self_compliance_ * sums_.tension > kTensionToError * certificate.worst() * displacement_) {
+      sums_ = passes_.advance(kLongestStep - step, fields_.p, v_.data(), fields_.g, q_.data());
+    }
     fresh = false;
     if (step == 0) {  // a lone node, a residual at round-off, or no way down
       preconditioned = preconditioned && preconditioner_.treats_large_scales();
