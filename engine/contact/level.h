@@ -1,23 +1,27 @@
 // Conjugate gradients for the constrained problem on one grid.
 //
-// The nodes in contact change as the iteration goes; the direction is kept conjugate to the last one across small
-// changes (E. A. H. Vollebregt, "The bound-constrained conjugate gradient method for non-negative matrices", 2014),
-// after I. A. Polonsky and L. M. Keer (1999). Each iteration costs one convolution:
+// A node is in contact where its pressure is more than what its gap r would let it lose: p > c r, c a part of the
+// cell's own stiffness (the active set of M. Hintermueller, K. Ito & K. Kunisch, 2002, with c small: it is asked in
+// every iteration). The direction is kept conjugate to the last one across small changes of that set (E. A. H.
+// Vollebregt, "The bound-constrained conjugate gradient method for non-negative matrices", 2014), after I. A. Polonsky
+// and L. M. Keer (1999). Each iteration costs one convolution:
 //
-//   r = gap − approach in contact; a prescribed force makes the approach the mean gap in
-//       contact, weighted by the pressure: nodes that are about to leave hardly count;
-//       prescribed moments make it the linear trend of the gap, weighted alike
-//   z = preconditioner · r, less its mean in contact if the force is prescribed,
+//   r = gap − approach; a prescribed force makes the approach the mean gap, weighted by the
+//       pressure: nodes that are about to leave hardly count; prescribed moments make it the
+//       linear trend of the gap, weighted alike
+//   z = preconditioner · r in contact, less its mean there if the force is prescribed,
 //       or its linear trend if its moments are as well
-//   v = −z + β v,   β = z·q / v·q,   q = K v_old
-//   p += α v, gap += α K v,   α = −r·v / v·K v
+//   w = max(β w − λ z, −p) in contact, else −p: all that a node has when it leaves
+//   w is shifted where it is free, w > −p, so that p + w meets the load
+//   q = K w,  α = −r·w / w·q over the free part
+//   p += α w, gap += α q
 //
-// Nodes with a negative deformed gap enter, as soon as that exceeds the error in contact. Nodes whose pressure turns
-// negative leave, but keep that tension until it matters: taking it out changes the displacement everywhere, which
-// costs another convolution. It is clipped, and the displacement recomputed, when it could cause a displacement
-// comparable to the present error, and always before convergence is declared: the certificate that is reported comes
-// from a fresh convolution. What was clipped is made up for by a factor on the pressure, linear in the place where
-// moments are prescribed.
+// What leaves the contact is part of the direction, so that the displacement needs no second convolution for it; and
+// since the step is that of the free part alone, the residual it leaves is orthogonal to that part, which is what
+// conjugacy asks. λ is what the steps before wanted. A step longer than one takes more pressure than nodes had; that
+// tension is part of the next direction like all that is out of contact. Before convergence is declared it is
+// clipped, which a factor on the pressure makes up for, linear in the place where moments are prescribed, and the
+// certificate that is reported comes from a fresh convolution.
 #pragma once
 
 #include <cstddef>
