@@ -6,6 +6,7 @@
 
 #include "base/elapsed.h"
 #include "base/error.h"
+#include "plastic/moved_state.h"
 
 namespace brinell::plastic {
 
@@ -67,6 +68,17 @@ void ElasticPlastic::displace() {
   std::copy_n(gap_, grid_.nodes(), present_gap_);
   for_bodies([&](PlasticBody& body) { body.add_displacement(identical_ ? 2 : 1, present_gap_); });
   solver_.gap_changed();
+}
+
+void ElasticPlastic::move_upper_body(std::int64_t nodes_x, std::int64_t nodes_y) {
+  if (bodies_[1] != nullptr && (nodes_x != 0 || nodes_y != 0)) {
+    bodies_[1]->restore(moved(bodies_[1]->state(), nodes_x, nodes_y, grid_));
+  }
+  for_bodies([](PlasticBody& body) { body.guess(0); });
+  displace();
+  solver_.restore({{}, 0, solver_.first_touch()});
+  total_ = last_change_ = 0;
+  approach_ = solver_.first_touch();
 }
 
 void ElasticPlastic::residual_displacement(double* result) const {

@@ -61,6 +61,11 @@ class ElasticPlastic {
   /// side.
   PlasticSolution advance(const contact::Load& load, contact::Observer observer);
 
+  /// The gap's values are others now, because the upper body stands elsewhere: its plastic strain has moved by so
+  /// many nodes. The contact is opened. Throws Status::invalid_scene where plastic strain would leave the grid, and
+  /// is then undefined: restore() it.
+  void move_upper_body(std::int64_t nodes_x, std::int64_t nodes_y);
+
   /// Bytes of the acceleration for so many strain components of cuboids.
   static std::size_t acceleration_bytes(std::size_t unknowns);
 

@@ -479,7 +479,7 @@ void PlasticBody::restore(const State& state) {
   old_ = copy_of(state.strain);
   d_ = copy_of(state.increment);
   p_old_ = copy_of(state.equivalent);
-  const bool same = region_ == state.region;
+  const bool same = region_.box == state.region.box;  // wherever it lies
   std::unique_ptr<EigenstrainResponse> response = std::move(response_);
   std::unique_ptr<subsurface::StressField> stress = std::move(stress_);
   region_ = state.region;

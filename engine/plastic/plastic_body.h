@@ -122,6 +122,7 @@ class PlasticBody {
   };
   State state() const;
   void restore(const State& state);
+  static std::size_t state_bytes(std::size_t cuboids) { return (2 * 6 + 1) * Buffer<double>::padded_bytes(cuboids); }
 
   /// Bytes of one whose box takes all layers below so many nodes.
   static std::size_t bytes(const fft::Backend& backend, const Grid& grid, const Layers& layers,
