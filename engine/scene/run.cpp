@@ -50,8 +50,8 @@ void Run::prepare() {
   auto start = Clock::now();
   const Grid& grid = scene_.grid();
   auto gap = Buffer<double>::uninitialised(grid.nodes());
-  const Place place = place_of_upper(increments_.empty() ? 0 : increments_.back().position.step);
-  sum_surfaces(scene_, place, engine_.arena(), gap);
+  const Place first = place_of_upper(0);
+  sum_surfaces(scene_, first, engine_.arena(), gap);
   gap_ = std::move(gap);
   stage_seconds_[static_cast<int>(Stage::surface)] += seconds_since(start);
   start = Clock::now();
@@ -82,7 +82,14 @@ void Run::prepare() {
   }
   if (increments_.empty()) {
     step_origin_ = {0, std::min(0.0, solver_->first_touch())};
+    return;
   }
+  // A solver measures from where the bodies touch when it is made. That is the first place for a loaded run too, or
+  // it would round otherwise than the one that was saved.
+  const Place now = place_of_upper(increments_.back().position.step);
+  if (now == first) return;
+  sum_surfaces(scene_, now, engine_.arena(), gap_);
+  if (plastic_ == nullptr) solver_->gap_changed();
 }
 
 /// What a move changes; empty: nothing moves.
