@@ -112,7 +112,8 @@ void ElasticPlastic::restore(const State& state) {
 
 /// One implicit step to the load, from the state before it; d holds a first guess. Not converged: d is the last
 /// iterate, and the rest belongs to it.
-PlasticSolution ElasticPlastic::reach(const contact::Load& load, contact::Observer observer) {
+PlasticSolution ElasticPlastic::reach(const contact::Load& load, contact::Observer observer,
+                                      const TractionRatio& shear) {
   const double least =
       std::min(settings_.tolerance, std::max(kLeastContact, kContactToTolerance * settings_.tolerance));
   bool guessed = false;
@@ -134,7 +135,8 @@ PlasticSolution ElasticPlastic::reach(const contact::Load& load, contact::Observ
     });
     YieldError error;
     for_bodies([&](PlasticBody& body) {
-      const YieldError one = body.evaluate(solver_.pressure().data(), settings_.contact_modulus);
+      const TractionRatio own = &body == bodies_[1].get() ? TractionRatio{-shear[0], -shear[1]} : shear;
+      const YieldError one = body.evaluate(solver_.pressure().data(), settings_.contact_modulus, own);
       error.yield = std::max(error.yield, one.yield);
       error.flow = std::max(error.flow, one.flow);
     });
@@ -170,7 +172,8 @@ PlasticSolution ElasticPlastic::reach(const contact::Load& load, contact::Observ
   }
 }
 
-PlasticSolution ElasticPlastic::advance(const contact::Load& load, contact::Observer observer) {
+PlasticSolution ElasticPlastic::advance(const contact::Load& load, contact::Observer observer,
+                                        const TractionRatio& shear) {
   const State before = state();
   const bool force = load.drive == contact::Drive::force;
   const double origin = force ? total_ : approach_;
@@ -188,7 +191,7 @@ PlasticSolution ElasticPlastic::advance(const contact::Load& load, contact::Obse
       const double change = step.target - (force ? total_ : approach_);
       const double ratio = last_was_force_ == force && last_change_ != 0 ? change / last_change_ : 0;
       for_bodies([&](PlasticBody& body) { body.guess(std::clamp(ratio, 0.0, kMostExtrapolation)); });
-      const PlasticSolution one = reach(step, observer);
+      const PlasticSolution one = reach(step, observer, shear);
       solution.contact = one.contact.after(solution.contact);
       solution.iterations += one.iterations;
       solution.yield = one.yield;

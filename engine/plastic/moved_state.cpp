@@ -51,9 +51,8 @@ PlasticBody::State moved(const PlasticBody::State& state, std::int64_t nodes_x, 
     for (std::size_t c = 0; c < components; ++c) {
       for (std::int64_t row = 0; row < box.nz * y.count(); ++row) {
         const std::int64_t k = row / y.count(), j = y.begin + row % y.count();
-        std::copy_n(
-            field.data() + c * from_stride + static_cast<std::size_t>((k * box.ny + j) * box.nx + x.begin), x.count(),
-            values.data() + c * to_stride + static_cast<std::size_t>(row * x.count()));
+        std::copy_n(field.data() + c * from_stride + static_cast<std::size_t>((k * box.ny + j) * box.nx + x.begin),
+                    x.count(), values.data() + c * to_stride + static_cast<std::size_t>(row * x.count()));
       }
     }
     return values;

@@ -1,6 +1,7 @@
 #include "scene/plan.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/error.h"
 #include "contact/solver.h"
@@ -49,8 +50,12 @@ Plan::Plan(Engine& engine, const Scene& scene) {
 
   if (scene.hardens()) {
     const fft::Backend backend = engine.resources().backend;
+    plastic::TractionRatio any{};
+    for (const Step& step : scene.steps()) {
+      for (std::size_t axis = 0; axis < 2; ++axis) any[axis] += std::fabs(step.traction_ratio[axis]);
+    }
     const auto of_body = [&](std::size_t limit) {
-      return plastic::PlasticBody::bytes(backend, grid, scene.layers(), limit);
+      return plastic::PlasticBody::bytes(backend, grid, scene.layers(), limit, plastic::sources_of(any));
     };
     std::vector<const char*> bodies;
     for (const Which which : {Which::lower, Which::upper}) {

@@ -134,7 +134,8 @@ contact::Solution Run::solve(const contact::Load& load, contact::Observer observ
     increment.converged = solution.converged;
     return solution;
   }
-  const plastic::PlasticSolution solution = plastic_->advance(load, observer);
+  const double* ratio = scene_.steps()[static_cast<std::size_t>(increment.position.step)].traction_ratio;
+  const plastic::PlasticSolution solution = plastic_->advance(load, observer, {ratio[0], ratio[1]});
   plastic_fields_->forget();
   increment.converged = solution.converged;
   increment.yield = solution.yield;

@@ -314,10 +314,13 @@ void Scene::check_hardening() const {
       "beside a body that hardens the depths asked for must be those of its layers, (k + 1/2) times " +
           text(layers_.thickness) + " m for " + std::to_string(layers_.count) + " layers");
   for (std::size_t n = 0; n < steps_.size(); ++n) {
-    require(steps_[n].traction_ratio[0] == 0 && steps_[n].traction_ratio[1] == 0, Status::invalid_scene,
-            "step " + std::to_string(n) +
-                ": traction_ratio beside a body that hardens: yielding under shear is not covered; leave one of them "
-                "out");
+    const double* ratio = steps_[n].traction_ratio;
+    require(
+        !identical_ || (ratio[0] == 0 && ratio[1] == 0), Status::invalid_scene,
+        "step " + std::to_string(n) + ": traction_ratio = [" + text(ratio[0]) + ", " + text(ratio[1]) +
+            "] pushes bodies that are each other's mirror image (same_as_lower) in opposite directions: where " +
+            "they harden they are solved as one; give the upper body its own youngs_modulus, poissons_ratio and " +
+            "hardening");
   }
 }
 

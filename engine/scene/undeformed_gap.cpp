@@ -82,7 +82,9 @@ std::optional<NodeShift> whole_nodes(const Place& place, const Grid& grid) {
 }
 
 bool moves_node_values(const Scene& scene) {
-  const auto is_moved = [](const SurfaceEntry& entry) { return entry.body == Which::upper && has_node_values(entry); };
+  const auto is_moved = [](const SurfaceEntry& entry) {
+    return entry.body == Which::upper && has_node_values(entry);
+  };
   return std::any_of(scene.steps().begin(), scene.steps().end(), [](const Step& step) { return step.moves(); }) &&
          std::any_of(scene.surfaces().begin(), scene.surfaces().end(), is_moved);
 }
@@ -98,7 +100,8 @@ void check_offsets(const Scene& scene) {
                              text(place.y) + "] m";
     if (!std::isfinite(place.x) || !std::isfinite(place.y)) fail(Status::invalid_scene, what + ": must be finite");
     if (scene.hardens() && scene.identical()) {
-      fail(Status::invalid_scene, what + ", but bodies that are each other's mirror image (same_as_lower) are solved " +
+      fail(Status::invalid_scene, what +
+                                      ", but bodies that are each other's mirror image (same_as_lower) are solved " +
                                       "as one: where one of them moves they are not; give the upper body its own " +
                                       "youngs_modulus, poissons_ratio and hardening");
     }
@@ -116,10 +119,10 @@ void check_offsets(const Scene& scene) {
       const std::string of_surface =
           ", but surface " + std::to_string(k) + " of it " + (is_map ? "is a height map" : "is rough");
       if (is_map && scene.boundary() == Boundary::free) {
-        fail(Status::invalid_scene, what + of_surface +
-                                        ": on a free boundary nothing is known of what moves into the grid; give the " +
-                                        "map to the lower body and move the other surfaces by the offset, or make " +
-                                        "the boundary periodic");
+        fail(Status::invalid_scene,
+             what + of_surface + ": on a free boundary nothing is known of what moves into the grid; give the " +
+                 "map to the lower body and move the other surfaces by the offset, or make " +
+                 "the boundary periodic");
       }
       if (!is_whole) fail(Status::invalid_scene, what + of_surface + ", which moves from node to node" + spacings);
     }
