@@ -346,7 +346,8 @@ typedef struct brn_step {
   int32_t increments;       /* >= 1 */
   double target;            /* N >= 0, m, or Pa >= 0 */
   double traction_ratio[2]; /* full sliding: shear along x and y on the lower body, as multiples of the pressure; the
-                               upper body gets the opposite. Enters the stress below the surface alone */
+                               upper body gets the opposite. Enters the stress below the surface, and with it what
+                               yields; the displacement that it causes is left out of the contact */
   int32_t rotation;         /* BRN_ROTATION_...; periodic grids cannot rotate */
   int32_t reserved;
   double eccentricity[2]; /* with free rotation: centre of the pressure, x and y [m] from the grid's centre, within
@@ -843,7 +844,7 @@ static inline void brn_hardening_init(brn_hardening *value) {
 }
 
 /* The body hardens after this law (NULL or BRN_HARDENING_NONE: it stays elastic), whatever brn_scene_set_body makes
- * of it. Such scenes need a free boundary, layers, and no traction_ratio; depths of brn_subsurface must be the
+ * of it. Such scenes need a free boundary and layers; depths of brn_subsurface must be the
  * layers'. A run then solves plastic strain, residual stress and contact together; BRN_INVALID_SCENE from
  * brn_run_advance: plastic strain has reached the last layer or the grid's side, and the state is that before the
  * increment. */
@@ -853,7 +854,7 @@ BRN_API brn_status brn_scene_set_hardening(brn_scene *scene, int32_t which, cons
 BRN_API brn_status brn_scene_set_layers(brn_scene *scene, int64_t layers, double thickness);
 
 /* 1: the upper body is the mirror image of the lower one, its material and hardening, and one field serves both.
- * Where they harden, neither may move against the other (brn_step.offset). */
+ * Where they harden, neither may move or slide against the other (brn_step.offset, traction_ratio). */
 BRN_API brn_status brn_scene_set_identical(brn_scene *scene, int32_t identical);
 
 /* Points of one isotropic body, count doubles in each array. Trial stress: the stress if the strain increment were

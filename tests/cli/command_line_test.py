@@ -559,6 +559,18 @@ fields = ["plastic_strain", "equivalent_plastic_strain", "residual_stress", "res
         self.assertEqual(sizes["equivalent_plastic_strain"], "14 24 24")
         self.assertEqual(sizes["residual_displacement"], "1 24 24")
 
+    def test_a_body_that_hardens_is_pressed_elsewhere_and_slid_on(self):
+        self.hardening_scene("normal_force = 0.0\n", "normal_force = 0.0\n[[step]]\nnormal_force = 1.0\n"
+                             "offset = [4e-6, 0]\ntraction_ratio = [0, 0.3]\n")
+        self.expect(self.run_scene(), 0)
+        increments = self.summary()["increments"]
+        once, again = increments[-3], increments[-1]
+        self.assertEqual(again["offset"], [4e-6, 0])
+        self.assertGreater(again["plastic_nodes"], 1.1 * once["plastic_nodes"])
+        self.assertGreater(again["centre_of_force"][0], 3e-6)
+        self.assertGreater(again["first_touch"], 0)  # the imprints
+        self.assertLessEqual(again["certificate"]["yield"], 1e-7)
+
     def test_identical_bodies_harden_alike(self):
         self.hardening_scene("[upper]\nrigid = true", "[upper]\nsame_as_lower = true")
         self.expect(self.run_scene(), 0)
@@ -575,6 +587,11 @@ fields = ["plastic_strain", "equivalent_plastic_strain", "residual_stress", "res
             ("nodes = [24, 24]", 'nodes = [24, 24]\nboundary = "periodic"', ["free boundary"]),
             ("[upper]\nrigid = true", "[upper]\nrigid = true\nhardening = {law = \"perfect\", yield_stress = 1e9}",
              ["hardening", "rigid = true"]),
+            ("[upper]\nrigid = true", "[upper]\nsame_as_lower = true\n[[step]]\nnormal_force = 1.0\noffset = [2e-6, 0]",
+             ["offset = [2e-06, 0]", "same_as_lower"]),
+            ("[upper]\nrigid = true",
+             "[upper]\nsame_as_lower = true\n[[step]]\nnormal_force = 1.0\ntraction_ratio = [0.1, 0]",
+             ["traction_ratio = [0.1, 0]", "same_as_lower"]),
         ]
         for old, new, words in cases:
             with self.subTest(new):
