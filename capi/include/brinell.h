@@ -616,7 +616,7 @@ enum {
   BRN_FIELD_PRESSURE = 1,       /* [Pa] */
   BRN_FIELD_GAP = 2,            /* of the deformed surfaces [m] */
   BRN_FIELD_DISPLACEMENT = 3,   /* normal, of both bodies together [m] */
-  BRN_FIELD_UNDEFORMED_GAP = 4, /* [m]; known before the first increment */
+  BRN_FIELD_UNDEFORMED_GAP = 4, /* with the upper body where it stands [m]; known before the first increment */
   /* Displacement of the surface that plastic strain alone leaves [m], positive into the body; where that body
      hardens: */
   BRN_FIELD_RESIDUAL_DISPLACEMENT = 10,

@@ -98,8 +98,8 @@ struct Run::BeforeMove {
   plastic::ElasticPlastic::State plastic;
 };
 
-/// The gap follows the step's offset, and the contact is opened.
-void Run::move_upper_body(const Position& position) {
+/// The gap follows the step's offset, and the contact is opened. Returns the seconds that took.
+double Run::move_upper_body(const Position& position) {
   const auto start = Clock::now();
   const Place from = place_of_upper(position.step - 1), to = place_of_upper(position.step);
   sum_surfaces(scene_, to, engine_.arena(), gap_);
@@ -111,9 +111,7 @@ void Run::move_upper_body(const Position& position) {
     solver_->gap_changed();
     solver_->restore({{}, 0, solver_->first_touch()});
   }
-  const double seconds = seconds_since(start);
-  stage_seconds_[static_cast<int>(Stage::surface)] += seconds;
-  stage_seconds_[static_cast<int>(Stage::contact)] -= seconds;
+  return seconds_since(start);
 }
 
 /// All but the state of an elastic contact.
@@ -191,8 +189,9 @@ const Increment& Run::advance(const Proceed& proceed) {
   Increment increment;
   increment.position = position;
   contact::Solution solution;
+  double moving = 0;  // [s]
   try {
-    if (moves) move_upper_body(position);
+    if (moves) moving = move_upper_body(position);
     solution = solve(load, observe, increment);
   } catch (...) {
     trace_.resize(traced);
@@ -210,7 +209,8 @@ const Increment& Run::advance(const Proceed& proceed) {
   const double seconds = seconds_since(start);
   increments_.back().wall_seconds = seconds;
   solving_seconds_ += seconds;
-  stage_seconds_[static_cast<int>(Stage::contact)] += seconds;
+  stage_seconds_[static_cast<int>(Stage::surface)] += moving;
+  stage_seconds_[static_cast<int>(Stage::contact)] += seconds - moving;
   if (stress_ != nullptr) {
     increments_.back().stress_missing = true;
     compute_stress(proceed);

@@ -127,7 +127,7 @@ class Run {
   using Clock = std::chrono::steady_clock;
 
   void prepare();
-  void move_upper_body(const Position& position);
+  double move_upper_body(const Position& position);
   struct BeforeMove;
   void move_back(const BeforeMove& before);
   contact::Solution solve(const contact::Load& load, contact::Observer observer, Increment& increment);

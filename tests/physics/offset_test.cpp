@@ -10,6 +10,7 @@
 //     parts (1 - 2 nu)/(2 pi r²) of the radial and the circumferential stress cancel for strain that is alike along x
 //     and y, and 1/r³ is left.
 #include <gtest/gtest.h>
+#include <oneapi/tbb/global_control.h>
 
 #include <cmath>
 #include <cstdint>
@@ -195,6 +196,52 @@ TEST(Offset, adds_up_over_steps_but_for_rounding) {
   EXPECT_EQ(place_of_upper(scene, 4), (scene::Place{0, 3 * 0.3e-6}));
 }
 
+TEST(Offset, eccentricity_stays_that_of_the_grid) {
+  const auto engine = engine_of();
+  const Grid grid{45, 38, kSpacing, kSpacing};
+  Scene scene = bare(grid);
+  scene.add(surface::FlatPunch{5e-6, 1e-3});
+  const double x = 3 * kSpacing, y = -2 * kSpacing;
+  Step centred = press(0.02, x, y);  // the force stays where the punch was
+  centred.free_rotation = true;
+  Step along = centred;
+  along.offset[0] = along.offset[1] = 0;
+  along.eccentricity[0] = x;
+  along.eccentricity[1] = y;
+  const Scene pressed = with(scene, {centred, along});
+  scene::Run run(*engine, pressed);
+  finish(run);
+  const scene::Increment &left_behind = run.increments()[0], &followed = run.increments()[1];
+  // The certificate holds the place to 1e-8 of half the grid.
+  EXPECT_NEAR(left_behind.centre_of_force[0], 0, 1e-8 * 12e-6);
+  EXPECT_NEAR(followed.centre_of_force[0], x, 1e-8 * 12e-6);
+  EXPECT_GT(left_behind.tilt[0], 1e-6) << "a force on the side of negative x from the punch";
+  EXPECT_LT(std::fabs(followed.tilt[0]), 1e-3 * left_behind.tilt[0]);
+}
+
+TEST(Offset, gives_the_same_bits_for_any_number_of_threads_and_holds_in_mixed_precision) {
+  const tbb::global_control three(tbb::global_control::max_allowed_parallelism, 3);
+  const Grid grid{96, 80, kSpacing, kSpacing};
+  for (const bool mixed : {false, true}) {
+    Scene scene = bare(grid);
+    scene.add(surface::Sphere{kRadius});
+    scene.add(surface::Roughness{0.8, 0, 1e-9, 0, 0, 0, 7});
+    scene::SolverSettings solver;
+    solver.mixed_precision = mixed;
+    scene.set_solver(solver);
+    scene = with(scene, {press(0.1), press(0.1, 7.3 * kSpacing, -5 * kSpacing), press(0.05, 1e-6, 1e-6)});
+    std::vector<double> alone;
+    for (const int threads : {1, 2, 3}) {
+      const auto engine = engine_of(threads);
+      scene::Run run(*engine, scene);
+      finish(run);
+      if (alone.empty()) alone = field(run);
+      EXPECT_EQ(field(run), alone) << threads;
+      for (const scene::Increment& one : run.increments()) EXPECT_LE(one.worst(), 1e-8);
+    }
+  }
+}
+
 TEST(Offset, periodic_surfaces_repeat_themselves) {
   // Spacings and wavelengths that are powers of two: the same waves to the bit.
   const double spacing = 0x1p-20;
@@ -333,6 +380,27 @@ TEST(Offset, there_and_back_is_as_if_nothing_had_moved_to_the_bit) {
     EXPECT_EQ(moved.increments().back().plastic[static_cast<int>(which)].largest,
               still.increments().back().plastic[static_cast<int>(which)].largest);
   }
+}
+
+TEST(Offset, only_the_motion_against_each_other_matters) {
+  const auto engine = engine_of();
+  const std::vector<double> cycle{0.5 * kForce, kForce, 0};
+  const std::vector<Step> steps = one_after_the_other({at(0, cycle), at(7, {0.5 * kForce, kForce})});
+  // Below: the sphere leaves the imprint. Above: the imprint leaves the sphere, to the other side.
+  Scene below = plastic_scene(Which::lower), above = bare(wide_grid());
+  above.set_body(Which::upper, below.body(Which::lower));
+  above.set_body(Which::lower, {});
+  above.set_hardening(Which::upper, below.hardening(Which::lower));
+  above.set_layers(kLayers);
+  above.add(surface::Sphere{kRadius}, Which::lower);
+  scene::Run lower(*engine, with(below, steps)), upper(*engine, with(above, steps));
+  finish(lower);
+  finish(upper);
+  const scene::Increment &a = lower.increments().back(), &b = upper.increments().back();
+  EXPECT_NEAR(b.approach, a.approach, 1e1 * kTolerance * a.approach);
+  EXPECT_NEAR(b.plastic[1].largest, a.plastic[0].largest, 1e3 * kTolerance * a.plastic[0].largest);
+  EXPECT_NEAR(b.centre_of_force[0], 7 * kCell - a.centre_of_force[0], 1e-4 * kCell);
+  EXPECT_EQ(b.plastic[1].cuboids, a.plastic[0].cuboids);
 }
 
 TEST(Offset, an_upper_body_takes_its_imprint_along) {
