@@ -63,6 +63,49 @@ void add_moved(const Buffer<double>& values, const NodeShift& shift, const Grid&
   }
 }
 
+/// Surface k has values at nodes; `what` has moved it, by whole nodes or not.
+void check_node_values(const Scene& scene, std::size_t k, const std::string& what, bool is_whole,
+                       const std::string& spacings) {
+  const bool is_map = std::holds_alternative<Heights>(scene.surfaces()[k].form);
+  const std::string surface =
+      what + ", but surface " + std::to_string(k) + " of it " + (is_map ? "is a height map" : "is rough");
+  if (is_map && scene.boundary() == Boundary::free) {
+    fail(Status::invalid_scene, surface +
+                                    ": on a free boundary nothing is known of what moves into the grid; give the map "
+                                    "to the lower body and move the other surfaces by the offset, or make the "
+                                    "boundary periodic");
+  }
+  if (!is_whole) fail(Status::invalid_scene, surface + ", which moves from node to node" + spacings);
+}
+
+/// Of step n.
+void check_offset(const Scene& scene, std::size_t n) {
+  const Grid& grid = scene.grid();
+  const Step& step = scene.steps()[n];
+  const Place place = place_of_upper(scene, static_cast<std::int32_t>(n));
+  const std::string what = "step " + std::to_string(n) + ": offset = [" + text(step.offset[0]) + ", " +
+                           text(step.offset[1]) + "] m takes the upper body to [" + text(place.x) + ", " +
+                           text(place.y) + "] m";
+  if (!std::isfinite(place.x) || !std::isfinite(place.y)) fail(Status::invalid_scene, what + ": must be finite");
+  if (scene.hardens() && scene.identical()) {
+    fail(Status::invalid_scene, what +
+                                    ", but bodies that are each other's mirror image (same_as_lower) are solved as "
+                                    "one: where one of them moves they are not; give the upper body its own "
+                                    "youngs_modulus, poissons_ratio and hardening");
+  }
+  if (place == Place{}) return;
+  const bool is_whole = whole_nodes(place, grid).has_value();
+  const std::string spacings =
+      ": must add up to whole multiples of the spacing, " + text(grid.dx) + " x " + text(grid.dy) + " m";
+  if (scene.hardens(Which::upper) && !is_whole) {
+    fail(Status::invalid_scene, what + ", which hardens, so that its cuboids move from node to node" + spacings);
+  }
+  for (std::size_t k = 0; k < scene.surfaces().size(); ++k) {
+    const SurfaceEntry& entry = scene.surfaces()[k];
+    if (entry.body == Which::upper && has_node_values(entry)) check_node_values(scene, k, what, is_whole, spacings);
+  }
+}
+
 }  // namespace
 
 Place place_of_upper(const Scene& scene, std::int32_t step) {
@@ -90,42 +133,8 @@ bool moves_node_values(const Scene& scene) {
 }
 
 void check_offsets(const Scene& scene) {
-  const Grid& grid = scene.grid();
   for (std::size_t n = 0; n < scene.steps().size(); ++n) {
-    const Step& step = scene.steps()[n];
-    if (!step.moves()) continue;
-    const Place place = place_of_upper(scene, static_cast<std::int32_t>(n));
-    const std::string what = "step " + std::to_string(n) + ": offset = [" + text(step.offset[0]) + ", " +
-                             text(step.offset[1]) + "] m takes the upper body to [" + text(place.x) + ", " +
-                             text(place.y) + "] m";
-    if (!std::isfinite(place.x) || !std::isfinite(place.y)) fail(Status::invalid_scene, what + ": must be finite");
-    if (scene.hardens() && scene.identical()) {
-      fail(Status::invalid_scene, what +
-                                      ", but bodies that are each other's mirror image (same_as_lower) are solved " +
-                                      "as one: where one of them moves they are not; give the upper body its own " +
-                                      "youngs_modulus, poissons_ratio and hardening");
-    }
-    if (place == Place{}) continue;
-    const bool is_whole = whole_nodes(place, grid).has_value();
-    const std::string spacings =
-        ": must add up to whole multiples of the spacing, " + text(grid.dx) + " x " + text(grid.dy) + " m";
-    if (scene.hardens(Which::upper) && !is_whole) {
-      fail(Status::invalid_scene, what + ", which hardens, so that its cuboids move from node to node" + spacings);
-    }
-    for (std::size_t k = 0; k < scene.surfaces().size(); ++k) {
-      const SurfaceEntry& entry = scene.surfaces()[k];
-      if (entry.body != Which::upper || !has_node_values(entry)) continue;
-      const bool is_map = std::holds_alternative<Heights>(entry.form);
-      const std::string of_surface =
-          ", but surface " + std::to_string(k) + " of it " + (is_map ? "is a height map" : "is rough");
-      if (is_map && scene.boundary() == Boundary::free) {
-        fail(Status::invalid_scene,
-             what + of_surface + ": on a free boundary nothing is known of what moves into the grid; give the " +
-                 "map to the lower body and move the other surfaces by the offset, or make " +
-                 "the boundary periodic");
-      }
-      if (!is_whole) fail(Status::invalid_scene, what + of_surface + ", which moves from node to node" + spacings);
-    }
+    if (scene.steps()[n].moves()) check_offset(scene, n);
   }
 }
 
