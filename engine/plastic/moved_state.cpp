@@ -27,13 +27,14 @@ struct Kept {
 
 PlasticBody::State moved(const PlasticBody::State& state, std::int64_t nodes_x, std::int64_t nodes_y,
                          const Grid& grid) {
-  if (state.region.empty()) return {};
-  const Box& box = state.region.box;
-  const Kept x(state.region.i0, box.nx, nodes_x, grid.nx), y(state.region.j0, box.ny, nodes_y, grid.ny);
+  const auto& [region, strain, increment, equivalent] = state;  // all of it: another member does not compile here
+  if (region.empty()) return {};
+  const Box& box = region.box;
+  const Kept x(region.i0, box.nx, nodes_x, grid.nx), y(region.j0, box.ny, nodes_y, grid.ny);
   for (std::int64_t row = 0; row < box.nz * box.ny; ++row) {
     for (std::int64_t i = 0; i < box.nx; ++i) {
       if (x.holds(i) && y.holds(row % box.ny)) continue;
-      if (!(state.equivalent[static_cast<std::size_t>(row * box.nx + i)] > 0)) continue;
+      if (!(equivalent[static_cast<std::size_t>(row * box.nx + i)] > 0)) continue;
       fail(Status::invalid_scene, "offset: the upper body moves by " + std::to_string(nodes_x) + " x " +
                                       std::to_string(nodes_y) + " nodes, which takes plastic strain of it beyond " +
                                       "the grid's side, where nothing is known; move it less far or give the grid " +
@@ -57,9 +58,9 @@ PlasticBody::State moved(const PlasticBody::State& state, std::int64_t nodes_x, 
     }
     return values;
   };
-  result.strain = kept(state.strain);
-  result.increment = kept(state.increment);
-  result.equivalent = kept(state.equivalent);
+  result.strain = kept(strain);
+  result.increment = kept(increment);
+  result.equivalent = kept(equivalent);
   return result;
 }
 
