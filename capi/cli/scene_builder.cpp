@@ -124,9 +124,6 @@ class Builder {
 
   void refuse_unsupported() const {
     const std::string release = std::string(" is not supported by brinell ") + brn_version();
-    for (const auto& step : file_.steps) {
-      if (step.offset) fail(step.line, "[[step]]: offset" + release);
-    }
     for (const auto& field : file_.output.fields) {
       if (field_info(field).id != 0) continue;
       fail(file_.output.line, std::string("[output]: the field ").append(field).append(release));
@@ -221,6 +218,10 @@ class Builder {
     accept(brn_scene_set_layers(scene_.get(), grid.layers, grid.layer_thickness), grid.line, "[grid]");
   }
 
+  static std::int32_t owner_of(const SurfacePart& part) {
+    return part.body == "upper" ? BRN_UPPER : part.body == "lower" ? BRN_LOWER : BRN_BODY_DEFAULT;
+  }
+
   void add_surface(const SurfacePart& part, std::size_t index, const brn_grid& grid) {
     const std::string label = label_of(index);
     if (part.shape == "file") {
@@ -233,6 +234,7 @@ class Builder {
       heights.detrend = part.detrend == "plane"  ? BRN_DETREND_PLANE
                         : part.detrend == "mean" ? BRN_DETREND_MEAN
                                                  : BRN_DETREND_NONE;
+      heights.body = owner_of(part);
       accept(brn_scene_add_heights(scene_.get(), &heights), part.line, label);
       maps_[index].reset();
     } else if (part.shape == "rough") {
@@ -240,6 +242,7 @@ class Builder {
       brn_roughness_init(&roughness);
       fill_in(roughness, part.numbers, kRoughNumbers);
       roughness.seed = part.seed;
+      roughness.body = owner_of(part);
       accept(brn_scene_add_roughness(scene_.get(), &roughness), part.line, label);
     } else {
       brn_shape shape;
@@ -251,6 +254,7 @@ class Builder {
       fill_in(shape, part.numbers, kShapeNumbers);
       shape.wavelength_x = part.wavelength[0];
       shape.wavelength_y = part.wavelength[1];
+      shape.body = owner_of(part);
       accept(brn_scene_add_shape(scene_.get(), &shape), part.line, label);
     }
   }
@@ -301,6 +305,7 @@ class Builder {
     step.target = part.normal_force ? *part.normal_force : part.approach ? *part.approach : *part.mean_pressure;
     if (part.traction_ratio) std::copy_n(part.traction_ratio->data(), 2, step.traction_ratio);
     if (part.tilt) std::copy_n(part.tilt->data(), 2, step.tilt);
+    if (part.offset) std::copy_n(part.offset->data(), 2, step.offset);
     if (part.eccentricity) {
       step.rotation = BRN_ROTATION_FREE;
       std::copy_n(part.eccentricity->data(), 2, step.eccentricity);

@@ -165,6 +165,7 @@ SurfacePart read_surface_part(TomlTable& table, const std::filesystem::path& fol
   SurfacePart surface;
   surface.line = table.line();
   surface.shape = read_kind(table, "shape", shapes(), surface.numbers);
+  surface.body = table.choice("body", {"lower", "upper"}).value_or("");
   const std::string& shape = surface.shape;
   if (shape == "sphere" || shape == "ellipsoid" || shape == "roller") {
     surface.exact = table.choice("profile", {"parabolic", "exact"}).value_or("parabolic") == "exact";

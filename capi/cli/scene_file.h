@@ -43,6 +43,7 @@ struct BodyPart {
 struct SurfacePart {
   int line = 0;
   std::string shape;
+  std::string body;                       ///< lower or upper; empty: as its shape has it
   std::map<std::string, double> numbers;  ///< lengths, angles and exponents by key
   std::array<double, 2> wavelength{};     ///< sinusoid [m]
   bool exact = false;                     ///< sphere, ellipsoid, roller

@@ -159,7 +159,7 @@ static inline void brn_grid_init(brn_grid *value) {
 /* Before any surface of heights is added; a scene's grid cannot change once it holds one. */
 BRN_API brn_status brn_scene_set_grid(brn_scene *scene, const brn_grid *grid);
 
-enum { BRN_LOWER = 0, BRN_UPPER = 1 };
+enum { BRN_BODY_DEFAULT = -1, BRN_LOWER = 0, BRN_UPPER = 1 };
 
 typedef struct brn_body {
   size_t struct_size;
@@ -192,6 +192,10 @@ enum {
 
 enum { BRN_PROFILE_PARABOLIC = 0, BRN_PROFILE_EXACT = 1 };
 
+/* Surfaces say whose they are, which matters where brn_step.offset moves the upper body. BRN_BODY_DEFAULT: spheres,
+ * ellipsoids, cones, punches and rollers are the upper body's; planes, sinusoids, roughness and heights the lower
+ * one's. */
+
 /* Each shape is zero at its apex, above the grid's centre, and grows outwards. */
 typedef struct brn_shape {
   size_t struct_size;
@@ -202,6 +206,8 @@ typedef struct brn_shape {
   double edge_radius;
   double straight_length, crown_radius;
   double amplitude, wavelength_x, wavelength_y;
+  int32_t body; /* BRN_BODY_DEFAULT, BRN_LOWER or BRN_UPPER */
+  int32_t reserved;
 } brn_shape;
 
 static inline void brn_shape_init(brn_shape *value) {
@@ -219,6 +225,8 @@ static inline void brn_shape_init(brn_shape *value) {
   value->amplitude = 0.0;
   value->wavelength_x = 0.0;
   value->wavelength_y = 0.0;
+  value->body = BRN_BODY_DEFAULT;
+  value->reserved = 0;
 }
 
 /* The gap is the sum of all shapes minus all heights. */
@@ -236,6 +244,8 @@ typedef struct brn_roughness {
   double rolloff;      /* [m]; 0: long_cutoff */
   double short_cutoff; /* [m]; 0: twice the larger spacing */
   uint64_t seed;
+  int32_t body; /* BRN_BODY_DEFAULT, BRN_LOWER or BRN_UPPER */
+  int32_t reserved;
 } brn_roughness;
 
 static inline void brn_roughness_init(brn_roughness *value) {
@@ -247,6 +257,8 @@ static inline void brn_roughness_init(brn_roughness *value) {
   value->rolloff = 0.0;
   value->short_cutoff = 0.0;
   value->seed = 0;
+  value->body = BRN_BODY_DEFAULT;
+  value->reserved = 0;
 }
 BRN_API brn_status brn_scene_add_roughness(brn_scene *scene, const brn_roughness *roughness);
 
@@ -261,6 +273,8 @@ typedef struct brn_heights {
   int64_t stride_x, stride_y; /* 0: contiguous, 1 and nx */
   int32_t detrend;            /* BRN_DETREND_... */
   int32_t reserved;
+  int32_t body; /* of a scene: BRN_BODY_DEFAULT, BRN_LOWER or BRN_UPPER */
+  int32_t reserved2;
 } brn_heights;
 
 static inline void brn_heights_init(brn_heights *value) {
@@ -272,6 +286,8 @@ static inline void brn_heights_init(brn_heights *value) {
   value->stride_y = 0;
   value->detrend = 0;
   value->reserved = 0;
+  value->body = BRN_BODY_DEFAULT;
+  value->reserved2 = 0;
 }
 
 /* Copies the heights. NaN and infinity are refused with their index. */
@@ -315,20 +331,31 @@ enum {
  * The bodies stay parallel unless a step says otherwise: to press beside the centre,
  *   step.rotation = BRN_ROTATION_FREE; step.eccentricity[0] = 1e-3;
  * and brn_increment.tilt tells how they turned. A force at the centre keeps only symmetric bodies parallel when they
- * may rotate. BRN_NO_EQUILIBRIUM: no contact can carry the force where it acts. */
+ * may rotate. BRN_NO_EQUILIBRIUM: no contact can carry the force where it acts.
+ *
+ * A step with an offset first moves the upper body sideways, from where it stood; offsets add up. Without friction
+ * only the places matter, so bodies may move while they are in contact, which is then solved anew. What is known by a
+ * formula moves by any way; roughness, heights and the cuboids of an upper body that hardens by whole nodes, so that
+ * the offsets must add up to multiples of the spacing (but for rounding, 1e-9 of it). Formulas and heights come back
+ * on the other side of a periodic boundary; on a free one heights of the upper body cannot move, because nothing is
+ * known of what would move into the grid, and plastic strain cannot leave it. All places of a run's results stay
+ * those of the grid. */
 typedef struct brn_step {
   size_t struct_size;
   int32_t drive;            /* BRN_DRIVE_...: mean pressure on periodic grids only */
   int32_t increments;       /* >= 1 */
   double target;            /* N >= 0, m, or Pa >= 0 */
   double traction_ratio[2]; /* full sliding: shear along x and y on the lower body, as multiples of the pressure; the
-                               upper body gets the opposite. Enters the stress below the surface alone */
+                               upper body gets the opposite. Enters the stress below the surface, and with it what
+                               yields; the displacement that it causes is left out of the contact */
   int32_t rotation;         /* BRN_ROTATION_...; periodic grids cannot rotate */
   int32_t reserved;
   double eccentricity[2]; /* with free rotation: centre of the pressure, x and y [m] from the grid's centre, within
-                             its nodes. With a prescribed approach the force follows */
+                             its nodes, wherever the upper body has moved. With a prescribed approach the force
+                             follows */
   double tilt[2];         /* with fixed rotation: slopes sx, sy [rad]; the deformed gap is
                              gap + displacement - approach + sx*x + sy*y, approach being at the grid's centre */
+  double offset[2];       /* by which the upper body moves along x and y before the step [m] */
 } brn_step;
 
 static inline void brn_step_init(brn_step *value) {
@@ -344,6 +371,8 @@ static inline void brn_step_init(brn_step *value) {
   value->eccentricity[1] = 0.0;
   value->tilt[0] = 0.0;
   value->tilt[1] = 0.0;
+  value->offset[0] = 0.0;
+  value->offset[1] = 0.0;
 }
 BRN_API brn_status brn_scene_add_step(brn_scene *scene, const brn_step *step);
 
@@ -467,9 +496,9 @@ typedef struct brn_increment {
   double approach;           /* [m] */
   double tilt[2];            /* slopes sx, sy [rad] of the plane that is added to the gap */
   double centre_of_force[2]; /* [m] */
-  double first_touch;        /* smallest undeformed gap [m] */
-  double contact_area;       /* [m^2] */
-  double max_pressure;       /* [Pa] */
+  double first_touch;  /* smallest gap of the surfaces without pressure, with what plastic strain has left [m] */
+  double contact_area; /* [m^2] */
+  double max_pressure; /* [Pa] */
   double max_pressure_at[2]; /* [m] */
   double mean_gap;           /* of the deformed surfaces, over the grid [m] */
   /* The certificate, recomputed from the final pressure with a fresh convolution: */
@@ -496,6 +525,7 @@ typedef struct brn_increment {
   double upper_max_equivalent_plastic_strain;
   double upper_max_equivalent_plastic_strain_at[3];
   int64_t upper_plastic_nodes;
+  double offset[2]; /* where the upper body stands, from where it began: the steps' offsets so far, summed [m] */
 } brn_increment;
 
 static inline void brn_increment_init(brn_increment *value) {
@@ -547,6 +577,8 @@ static inline void brn_increment_init(brn_increment *value) {
   value->upper_max_equivalent_plastic_strain_at[1] = 0.0;
   value->upper_max_equivalent_plastic_strain_at[2] = 0.0;
   value->upper_plastic_nodes = 0;
+  value->offset[0] = 0.0;
+  value->offset[1] = 0.0;
 }
 BRN_API brn_status brn_run_get_increment(brn_run *run, int32_t index, brn_increment *out);
 
@@ -584,7 +616,7 @@ enum {
   BRN_FIELD_PRESSURE = 1,       /* [Pa] */
   BRN_FIELD_GAP = 2,            /* of the deformed surfaces [m] */
   BRN_FIELD_DISPLACEMENT = 3,   /* normal, of both bodies together [m] */
-  BRN_FIELD_UNDEFORMED_GAP = 4, /* [m]; known before the first increment */
+  BRN_FIELD_UNDEFORMED_GAP = 4, /* with the upper body where it stands [m]; known before the first increment */
   /* Displacement of the surface that plastic strain alone leaves [m], positive into the body; where that body
      hardens: */
   BRN_FIELD_RESIDUAL_DISPLACEMENT = 10,
@@ -812,7 +844,7 @@ static inline void brn_hardening_init(brn_hardening *value) {
 }
 
 /* The body hardens after this law (NULL or BRN_HARDENING_NONE: it stays elastic), whatever brn_scene_set_body makes
- * of it. Such scenes need a free boundary, layers, and no traction_ratio; depths of brn_subsurface must be the
+ * of it. Such scenes need a free boundary and layers; depths of brn_subsurface must be the
  * layers'. A run then solves plastic strain, residual stress and contact together; BRN_INVALID_SCENE from
  * brn_run_advance: plastic strain has reached the last layer or the grid's side, and the state is that before the
  * increment. */
@@ -821,7 +853,8 @@ BRN_API brn_status brn_scene_set_hardening(brn_scene *scene, int32_t which, cons
 /* Layers of cuboids, thickness [m] > 0, in which plastic strain is uniform; their sides are the grid's spacing. */
 BRN_API brn_status brn_scene_set_layers(brn_scene *scene, int64_t layers, double thickness);
 
-/* 1: the upper body is the mirror image of the lower one, its material and hardening, and one field serves both. */
+/* 1: the upper body is the mirror image of the lower one, its material and hardening, and one field serves both.
+ * Where they harden, neither may move or slide against the other (brn_step.offset, traction_ratio). */
 BRN_API brn_status brn_scene_set_identical(brn_scene *scene, int32_t identical);
 
 /* Points of one isotropic body, count doubles in each array. Trial stress: the stress if the strain increment were

@@ -191,6 +191,9 @@ brn_status brn_run_get_increment(brn_run* run, int32_t index, brn_increment* out
     result.upper_max_equivalent_plastic_strain = i.plastic[BRN_UPPER].largest;
     std::copy_n(i.plastic[BRN_UPPER].at, 3, result.upper_max_equivalent_plastic_strain_at);
     result.upper_plastic_nodes = i.plastic[BRN_UPPER].cuboids;
+    const scene::Place place = run->run->place_of_upper(i.position.step);
+    result.offset[0] = place.x;
+    result.offset[1] = place.y;
     write(result, out, &brn_increment::step, &brn_increment::increment, &brn_increment::converged,
           &brn_increment::iterations, &brn_increment::convolutions, &brn_increment::contact_nodes,
           &brn_increment::normal_force, &brn_increment::approach, &brn_increment::tilt,
@@ -203,7 +206,8 @@ brn_status brn_run_get_increment(brn_run* run, int32_t index, brn_increment* out
           &brn_increment::yield, &brn_increment::substeps, &brn_increment::reserved3,
           &brn_increment::max_equivalent_plastic_strain, &brn_increment::max_equivalent_plastic_strain_at,
           &brn_increment::plastic_nodes, &brn_increment::upper_max_equivalent_plastic_strain,
-          &brn_increment::upper_max_equivalent_plastic_strain_at, &brn_increment::upper_plastic_nodes);
+          &brn_increment::upper_max_equivalent_plastic_strain_at, &brn_increment::upper_plastic_nodes,
+          &brn_increment::offset);
   });
 }
 

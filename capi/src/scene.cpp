@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "handles.h"
@@ -24,6 +25,13 @@ Enum checked_enum(int32_t value, int32_t last, const char* name) {
   return static_cast<Enum>(value);
 }
 
+std::optional<scene::Which> to_owner(int32_t body) {
+  if (body == BRN_BODY_DEFAULT) return {};
+  if (body == BRN_LOWER || body == BRN_UPPER) return static_cast<scene::Which>(body);
+  fail(Status::invalid_argument,
+       "body = " + std::to_string(body) + ": allowed are -1 (the default of its kind), 0 (lower) and 1 (upper)");
+}
+
 surface::Shape to_shape(const brn_shape& s) {
   const auto profile = checked_enum<surface::Profile>(s.profile, BRN_PROFILE_EXACT, "profile");
   switch (s.kind) {
@@ -43,6 +51,7 @@ surface::Shape to_shape(const brn_shape& s) {
 struct CheckedHeights {
   surface::HeightMap map;
   surface::Detrend detrend;
+  scene::Which body;
 };
 
 void check_stride(const char* name, std::int64_t stride, std::int64_t nodes) {
@@ -54,14 +63,15 @@ void check_stride(const char* name, std::int64_t stride, std::int64_t nodes) {
 
 CheckedHeights to_heights(const brn_heights* heights) {
   const auto h = read(heights, "heights", brn_heights_init, &brn_heights::values, &brn_heights::nx, &brn_heights::ny,
-                      &brn_heights::stride_x, &brn_heights::stride_y, &brn_heights::detrend);
+                      &brn_heights::stride_x, &brn_heights::stride_y, &brn_heights::detrend, &brn_heights::body);
   require(h.values, "values");
   surface::HeightMap map = surface::HeightMap::contiguous(h.values, h.nx, h.ny);
   if (h.stride_x != 0) map.stride_x = h.stride_x;
   if (h.stride_y != 0) map.stride_y = h.stride_y;
   check_stride("stride_x", map.stride_x, h.nx);
   check_stride("stride_y", map.stride_y, h.ny);
-  return {map, checked_enum<surface::Detrend>(h.detrend, BRN_DETREND_PLANE, "detrend")};
+  return {map, checked_enum<surface::Detrend>(h.detrend, BRN_DETREND_PLANE, "detrend"),
+          to_owner(h.body).value_or(scene::Which::lower)};
 }
 
 std::vector<double> to_depths(const brn_subsurface& s) {
@@ -118,11 +128,11 @@ brn_status brn_scene_set_body(brn_scene* scene, int32_t which, const brn_body* b
 
 brn_status brn_scene_add_shape(brn_scene* scene, const brn_shape* shape) {
   return guarded_use(scene, "scene", [&] {
-    scene->scene.add(
-        to_shape(read(shape, "shape", brn_shape_init, &brn_shape::kind, &brn_shape::profile, &brn_shape::radius,
-                      &brn_shape::radius_x, &brn_shape::radius_y, &brn_shape::half_angle, &brn_shape::tip_radius,
-                      &brn_shape::edge_radius, &brn_shape::straight_length, &brn_shape::crown_radius,
-                      &brn_shape::amplitude, &brn_shape::wavelength_x, &brn_shape::wavelength_y)));
+    const auto s = read(shape, "shape", brn_shape_init, &brn_shape::kind, &brn_shape::profile, &brn_shape::radius,
+                        &brn_shape::radius_x, &brn_shape::radius_y, &brn_shape::half_angle, &brn_shape::tip_radius,
+                        &brn_shape::edge_radius, &brn_shape::straight_length, &brn_shape::crown_radius,
+                        &brn_shape::amplitude, &brn_shape::wavelength_x, &brn_shape::wavelength_y, &brn_shape::body);
+    scene->scene.add(to_shape(s), to_owner(s.body));
   });
 }
 
@@ -130,16 +140,17 @@ brn_status brn_scene_add_roughness(brn_scene* scene, const brn_roughness* roughn
   return guarded_use(scene, "scene", [&] {
     const auto r = read(roughness, "roughness", brn_roughness_init, &brn_roughness::hurst, &brn_roughness::rms_slope,
                         &brn_roughness::rms_height, &brn_roughness::long_cutoff, &brn_roughness::rolloff,
-                        &brn_roughness::short_cutoff, &brn_roughness::seed);
+                        &brn_roughness::short_cutoff, &brn_roughness::seed, &brn_roughness::body);
     scene->scene.add(
-        surface::Roughness{r.hurst, r.rms_slope, r.rms_height, r.long_cutoff, r.rolloff, r.short_cutoff, r.seed});
+        surface::Roughness{r.hurst, r.rms_slope, r.rms_height, r.long_cutoff, r.rolloff, r.short_cutoff, r.seed},
+        to_owner(r.body).value_or(scene::Which::lower));
   });
 }
 
 brn_status brn_scene_add_heights(brn_scene* scene, const brn_heights* heights) {
   return guarded_use(scene, "scene", [&] {
     const CheckedHeights checked = to_heights(heights);
-    scene->scene.add(checked.map, checked.detrend);
+    scene->scene.add(checked.map, checked.detrend, checked.body);
   });
 }
 
@@ -167,7 +178,8 @@ brn_status brn_height_statistics(const brn_heights* heights, double dx, double d
 brn_status brn_scene_add_step(brn_scene* scene, const brn_step* step) {
   return guarded_use(scene, "scene", [&] {
     const auto s = read(step, "step", brn_step_init, &brn_step::drive, &brn_step::increments, &brn_step::target,
-                        &brn_step::traction_ratio, &brn_step::rotation, &brn_step::eccentricity, &brn_step::tilt);
+                        &brn_step::traction_ratio, &brn_step::rotation, &brn_step::eccentricity, &brn_step::tilt,
+                        &brn_step::offset);
     scene::Step checked;
     checked.drive = checked_enum<scene::StepDrive>(s.drive, BRN_DRIVE_MEAN_PRESSURE, "drive");
     checked.increments = s.increments;
@@ -176,6 +188,7 @@ brn_status brn_scene_add_step(brn_scene* scene, const brn_step* step) {
     std::copy_n(s.traction_ratio, 2, checked.traction_ratio);
     std::copy_n(s.eccentricity, 2, checked.eccentricity);
     std::copy_n(s.tilt, 2, checked.tilt);
+    std::copy_n(s.offset, 2, checked.offset);
     scene->scene.add(checked);
   });
 }

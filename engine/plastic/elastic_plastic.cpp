@@ -6,6 +6,7 @@
 
 #include "base/elapsed.h"
 #include "base/error.h"
+#include "plastic/moved_state.h"
 
 namespace brinell::plastic {
 
@@ -69,6 +70,17 @@ void ElasticPlastic::displace() {
   solver_.gap_changed();
 }
 
+void ElasticPlastic::move_upper_body(std::int64_t nodes_x, std::int64_t nodes_y) {
+  if (bodies_[1] != nullptr && (nodes_x != 0 || nodes_y != 0)) {
+    bodies_[1]->restore(moved(bodies_[1]->state(), nodes_x, nodes_y, grid_));
+  }
+  for_bodies([](PlasticBody& body) { body.guess(0); });
+  displace();
+  solver_.restore({{}, 0, solver_.first_touch()});
+  total_ = last_change_ = 0;
+  approach_ = solver_.first_touch();
+}
+
 void ElasticPlastic::residual_displacement(double* result) const {
   for (std::size_t n = 0; n < grid_.nodes(); ++n) result[n] = present_gap_[n] - gap_[n];
 }
@@ -100,7 +112,8 @@ void ElasticPlastic::restore(const State& state) {
 
 /// One implicit step to the load, from the state before it; d holds a first guess. Not converged: d is the last
 /// iterate, and the rest belongs to it.
-PlasticSolution ElasticPlastic::reach(const contact::Load& load, contact::Observer observer) {
+PlasticSolution ElasticPlastic::reach(const contact::Load& load, contact::Observer observer,
+                                      const TractionRatio& shear) {
   const double least =
       std::min(settings_.tolerance, std::max(kLeastContact, kContactToTolerance * settings_.tolerance));
   bool guessed = false;
@@ -122,7 +135,8 @@ PlasticSolution ElasticPlastic::reach(const contact::Load& load, contact::Observ
     });
     YieldError error;
     for_bodies([&](PlasticBody& body) {
-      const YieldError one = body.evaluate(solver_.pressure().data(), settings_.contact_modulus);
+      const TractionRatio own = &body == bodies_[1].get() ? TractionRatio{-shear[0], -shear[1]} : shear;
+      const YieldError one = body.evaluate(solver_.pressure().data(), settings_.contact_modulus, own);
       error.yield = std::max(error.yield, one.yield);
       error.flow = std::max(error.flow, one.flow);
     });
@@ -158,7 +172,8 @@ PlasticSolution ElasticPlastic::reach(const contact::Load& load, contact::Observ
   }
 }
 
-PlasticSolution ElasticPlastic::advance(const contact::Load& load, contact::Observer observer) {
+PlasticSolution ElasticPlastic::advance(const contact::Load& load, contact::Observer observer,
+                                        const TractionRatio& shear) {
   const State before = state();
   const bool force = load.drive == contact::Drive::force;
   const double origin = force ? total_ : approach_;
@@ -176,7 +191,7 @@ PlasticSolution ElasticPlastic::advance(const contact::Load& load, contact::Obse
       const double change = step.target - (force ? total_ : approach_);
       const double ratio = last_was_force_ == force && last_change_ != 0 ? change / last_change_ : 0;
       for_bodies([&](PlasticBody& body) { body.guess(std::clamp(ratio, 0.0, kMostExtrapolation)); });
-      const PlasticSolution one = reach(step, observer);
+      const PlasticSolution one = reach(step, observer, shear);
       solution.contact = one.contact.after(solution.contact);
       solution.iterations += one.iterations;
       solution.yield = one.yield;

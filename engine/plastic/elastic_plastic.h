@@ -58,8 +58,14 @@ class ElasticPlastic {
 
   /// Solves one increment up to the load. If the observer stops it, or anything fails, the error is passed on and the
   /// state is that before. Throws Status::invalid_scene where plastic strain reaches the last layer or the grid's
-  /// side.
-  PlasticSolution advance(const contact::Load& load, contact::Observer observer);
+  /// side. shear: full sliding, the shear that pushes the lower body, by the pressure; the upper one gets the
+  /// opposite. It adds to the stress that yields; what it displaces is left out of the contact, as of an elastic one.
+  PlasticSolution advance(const contact::Load& load, contact::Observer observer, const TractionRatio& shear = {});
+
+  /// The gap's values are others now, because the upper body stands elsewhere: its plastic strain has moved by so
+  /// many nodes. The contact is opened. Throws Status::invalid_scene where plastic strain would leave the grid, and
+  /// is then undefined: restore() it.
+  void move_upper_body(std::int64_t nodes_x, std::int64_t nodes_y);
 
   /// Bytes of the acceleration for so many strain components of cuboids.
   static std::size_t acceleration_bytes(std::size_t unknowns);
@@ -84,7 +90,7 @@ class ElasticPlastic {
 
  private:
   struct Progress;
-  PlasticSolution reach(const contact::Load& load, contact::Observer observer);
+  PlasticSolution reach(const contact::Load& load, contact::Observer observer, const TractionRatio& shear);
   void displace();
   contact::Box contact_box() const;
   template <class Body>

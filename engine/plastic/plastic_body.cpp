@@ -45,6 +45,13 @@ double square(double value) {
 
 }  // namespace
 
+subsurface::Sources sources_of(const TractionRatio& shear) {
+  subsurface::Sources sources{subsurface::Traction::pressure};
+  if (shear[0] != 0) sources.add(subsurface::Traction::shear_x);
+  if (shear[1] != 0) sources.add(subsurface::Traction::shear_y);
+  return sources;
+}
+
 PlasticBody::PlasticBody(const fft::Backend& backend, const Grid& grid, const Layers& layers,
                          const PlasticMaterial& material, std::size_t spectra_limit)
     : backend_(backend),
@@ -290,15 +297,18 @@ void PlasticBody::add_displacement(double weight, double* displacement) {
   for (std::size_t n = 0; n < displacement_.size(); ++n) displacement[n] += weight * displacement_[n];
 }
 
-YieldError PlasticBody::evaluate(const double* pressure, double unit) {
-  if (region_.empty()) return {};
+/// Into trial_.
+void PlasticBody::contact_stress(const double* pressure, double unit, const TractionRatio& shear) {
   const Box& box = region_.box;
-  if (stress_ == nullptr) {
+  const subsurface::Sources sources = sources_of(shear);
+  if (stress_ == nullptr || !(stress_->request().sources == sources)) {
+    stress_.reset();  // before the next takes its memory
     subsurface::StressRequest request;
     request.grid = {box.nx, box.ny, grid_.dx, grid_.dy};
     request.poissons_ratio = material_.poissons_ratio;
     request.depths = subsurface::layer_depths(box.nz, layers_.thickness);
     request.components = subsurface::kAllComponents;
+    request.sources = sources;
     stress_ = std::make_unique<subsurface::StressField>(backend_, request, spectra_limit_);
   }
   bool pressed = false;
@@ -309,14 +319,29 @@ YieldError PlasticBody::evaluate(const double* pressure, double unit) {
       pressure_[static_cast<std::size_t>(j * box.nx + i)] = row[i] * unit;
     }
   }
-  const TensorArrays contact = arrays(trial_);
-  if (pressed) {
-    subsurface::StressFields fields;
-    std::copy(contact.begin(), contact.end(), fields.component.begin());
-    stress_->compute({pressure_.data(), nullptr, nullptr}, fields);
-  } else {
+  if (!pressed) {
     std::fill(trial_.begin(), trial_.end(), 0.0);
+    return;
   }
+  std::array<Buffer<double>, 2> shears;
+  subsurface::Tractions tractions{pressure_.data(), nullptr, nullptr};
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    if (shear[axis] == 0) continue;
+    shears[axis] = Buffer<double>::uninitialised(pressure_.size());
+    std::transform(pressure_.begin(), pressure_.end(), shears[axis].begin(),
+                   [&](double p) { return shear[axis] * p; });
+    tractions[1 + axis] = shears[axis].data();
+  }
+  const TensorArrays contact = arrays(trial_);
+  subsurface::StressFields fields;
+  std::copy(contact.begin(), contact.end(), fields.component.begin());
+  stress_->compute(tractions, fields);
+}
+
+YieldError PlasticBody::evaluate(const double* pressure, double unit, const TractionRatio& shear) {
+  if (region_.empty()) return {};
+  const Box& box = region_.box;
+  contact_stress(pressure, unit, shear);
   if (!residual_is_current_) {
     residual_stress(arrays(residual_));
     residual_is_current_ = true;
@@ -479,7 +504,7 @@ void PlasticBody::restore(const State& state) {
   old_ = copy_of(state.strain);
   d_ = copy_of(state.increment);
   p_old_ = copy_of(state.equivalent);
-  const bool same = region_ == state.region;
+  const bool same = region_.box == state.region.box;  // wherever it lies
   std::unique_ptr<EigenstrainResponse> response = std::move(response_);
   std::unique_ptr<subsurface::StressField> stress = std::move(stress_);
   region_ = state.region;
@@ -491,20 +516,23 @@ void PlasticBody::restore(const State& state) {
 }
 
 std::size_t PlasticBody::bytes(const fft::Backend& backend, const Grid& grid, const Layers& layers,
-                               std::size_t spectra_limit) {
+                               std::size_t spectra_limit, subsurface::Sources sources) {
   const Box box{grid.nx, grid.ny, layers.count, grid.dx, grid.dy, layers.thickness};
   subsurface::StressRequest request;
   request.grid = grid;
   request.depths = subsurface::layer_depths(layers.count, layers.thickness);
   request.components = subsurface::kAllComponents;
+  request.sources = sources;
   const subsurface::StressPlan stress = subsurface::plan_stress(backend, request, spectra_limit);
   const EigenstrainResponse::Bytes response = EigenstrainResponse::bytes(backend, box);
   const EigenstrainResponse::Bytes surface =
       EigenstrainDisplacement::bytes(backend, grid, layers.count, layers.thickness);
+  const std::size_t shears = static_cast<std::size_t>(sources.has(subsurface::Traction::shear_x)) +
+                             static_cast<std::size_t>(sources.has(subsurface::Traction::shear_y));
   constexpr std::size_t kFields = 2 * 7 * kAll + 6;  // while the box grows, some twice; and the state to go back to
   return stress.kept_bytes + stress.work_bytes + response.spectra + response.work + surface.spectra + surface.work +
          std::max(response.generation, surface.generation) + kFields * Buffer<double>::padded_bytes(box.cuboids()) +
-         2 * Buffer<double>::padded_bytes(grid.nodes());
+         (2 + shears) * Buffer<double>::padded_bytes(grid.nodes());
 }
 
 }  // namespace brinell::plastic

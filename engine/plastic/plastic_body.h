@@ -59,6 +59,12 @@ struct YieldError {
   double worst() const { return yield > flow ? yield : flow; }
 };
 
+/// Shear along x and y, as multiples of the pressure.
+using TractionRatio = std::array<double, 2>;
+
+/// The pressure, and the shears that are not zero.
+subsurface::Sources sources_of(const TractionRatio& shear);
+
 struct LargestPlasticStrain {
   double value = 0;            // equivalent
   std::array<double, 3> at{};  // [m], z into the body; meaningless where the value is 0
@@ -94,8 +100,9 @@ class PlasticBody {
   /// Adds `weight` times the displacement of before + d to the nodes of the grid [m], positive into the body.
   void add_displacement(double weight, double* displacement);
 
-  /// Total stress, trial and return for the pressure of the grid, in units of `unit` [Pa].
-  YieldError evaluate(const double* pressure, double unit);
+  /// Total stress, trial and return for the pressure of the grid, in units of `unit` [Pa], and a shear of so many
+  /// times that, which pushes this body along x and y.
+  YieldError evaluate(const double* pressure, double unit, const TractionRatio& shear = {});
 
   /// For the acceleration, after evaluate(): d and what it was mapped to.
   AndersonPart unknowns();
@@ -122,15 +129,17 @@ class PlasticBody {
   };
   State state() const;
   void restore(const State& state);
+  static std::size_t state_bytes(std::size_t cuboids) { return (2 * 6 + 1) * Buffer<double>::padded_bytes(cuboids); }
 
-  /// Bytes of one whose box takes all layers below so many nodes.
+  /// Bytes of one whose box takes all layers below so many nodes, under such tractions.
   static std::size_t bytes(const fft::Backend& backend, const Grid& grid, const Layers& layers,
-                           std::size_t spectra_limit);
+                           std::size_t spectra_limit, subsurface::Sources sources);
 
  private:
   TensorView view(const Buffer<double>& field) const;
   TensorArrays arrays(Buffer<double>& field) const;
   void move_to(const Region& region);
+  void contact_stress(const double* pressure, double unit, const TractionRatio& shear);
   void combine();
   double try_stress();
   double distance_of_flow() const;

@@ -1,12 +1,14 @@
 #include "scene/plan.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/error.h"
 #include "contact/solver.h"
 #include "plastic/elastic_plastic.h"
 #include "scene/load_history.h"
 #include "scene/stress_stage.h"
+#include "scene/undeformed_gap.h"
 
 namespace brinell::scene {
 
@@ -16,6 +18,11 @@ void refuse_beyond(std::uint64_t limit, double bytes, const Grid& grid, const ch
   if (bytes <= static_cast<double>(limit)) return;
   fail(Status::too_large, "the grid of " + std::to_string(grid.nx) + " x " + std::to_string(grid.ny) +
                               " nodes needs " + how + text(bytes) + " bytes; allowed are " + std::to_string(limit));
+}
+
+/// Whether the upper body moves between increments.
+bool moves_on(const std::vector<Step>& steps) {
+  return std::any_of(steps.begin() + 1, steps.end(), [](const Step& step) { return step.moves(); });
 }
 
 }  // namespace
@@ -35,13 +42,20 @@ Plan::Plan(Engine& engine, const Scene& scene) {
     items.push_back({"contact", part.what, part.bytes});
   }
   if (total_increments(scene.steps()) > 1) items.push_back({"contact", "last solved pressure, to go back to", field});
+  const bool moves = moves_on(scene.steps());
+  if (moves) items.push_back({"surface", "gap before the upper body moves, to go back to", field});
+  if (moves_node_values(scene)) items.push_back({"surface", "heights of the upper body on their way", field});
   for (const PlanItem& item : items) memory_bytes += item.bytes;
   refuse_beyond(engine.memory_limit(), static_cast<double>(memory_bytes), grid, "");
 
   if (scene.hardens()) {
     const fft::Backend backend = engine.resources().backend;
+    plastic::TractionRatio any{};
+    for (const Step& step : scene.steps()) {
+      for (std::size_t axis = 0; axis < 2; ++axis) any[axis] += std::fabs(step.traction_ratio[axis]);
+    }
     const auto of_body = [&](std::size_t limit) {
-      return plastic::PlasticBody::bytes(backend, grid, scene.layers(), limit);
+      return plastic::PlasticBody::bytes(backend, grid, scene.layers(), limit, plastic::sources_of(any));
     };
     std::vector<const char*> bodies;
     for (const Which which : {Which::lower, Which::upper}) {
@@ -54,7 +68,13 @@ Plan::Plan(Engine& engine, const Scene& scene) {
     items.push_back({"plastic", "gap with the residual displacement", field});
     items.push_back(
         {"plastic", "acceleration, if all cuboids flow", plastic::ElasticPlastic::acceleration_bytes(unknowns)});
-    const std::uint64_t fixed = memory_bytes + items[items.size() - 2].bytes + items.back().bytes;
+    if (moves) {
+      const std::size_t cuboids = grid.nodes() * static_cast<std::size_t>(scene.layers().count);
+      items.push_back({"plastic", "plastic strain before the upper body moves, to go back to",
+                       bodies.size() * plastic::PlasticBody::state_bytes(cuboids)});
+    }
+    std::uint64_t fixed = 0;
+    for (const PlanItem& item : items) fixed += item.bytes;
     const std::uint64_t smallest = fixed + bodies.size() * of_body(0);
     refuse_beyond(engine.memory_limit(), static_cast<double>(smallest), grid, "");
     plastic_spectra_limit = std::min(engine.cache_limit(), engine.memory_limit() - smallest) / (2 * bodies.size());

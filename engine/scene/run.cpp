@@ -6,7 +6,6 @@
 
 #include "base/elapsed.h"
 #include "base/error.h"
-#include "surface/shapes.h"
 
 namespace brinell::scene {
 
@@ -19,19 +18,6 @@ struct PressureSums {
   double largest = 0;
   std::int64_t largest_at = -1;
 };
-
-/// Sizes that are fine each for itself may overflow together, as x²/(2·radius) does for a tiny radius.
-void check_finite(const Buffer<double>& gap, const Grid& grid) {
-  for (std::size_t n = 0; n < gap.size(); ++n) {
-    if (std::isfinite(gap[n])) continue;
-    const auto i = static_cast<std::int64_t>(n) % grid.nx;
-    const auto j = static_cast<std::int64_t>(n) / grid.nx;
-    fail(Status::invalid_scene, "the gap of the undeformed surfaces at node (" + std::to_string(i) + ", " +
-                                    std::to_string(j) + ") is " + text(gap[n]) +
-                                    " m: must be finite; compare the sizes of the surfaces with the grid's, " +
-                                    text(grid.dx) + " x " + text(grid.dy) + " m a cell");
-  }
-}
 
 }  // namespace
 
@@ -63,19 +49,9 @@ void Run::prepare() {
   if (solver_ != nullptr) return;
   auto start = Clock::now();
   const Grid& grid = scene_.grid();
-  Buffer<double> gap(grid.nodes());
-  for (const SurfaceEntry& entry : scene_.surfaces()) {
-    if (const auto* shape = std::get_if<surface::Shape>(&entry)) {
-      surface::add_to_gap(*shape, {}, grid, gap, engine_.arena());
-    } else if (const auto* roughness = std::get_if<surface::Roughness>(&entry)) {
-      surface::add_to_gap(*roughness, {}, grid, gap, engine_.arena());
-    } else {
-      const Heights& heights = std::get<Heights>(entry);
-      surface::add_to_gap(surface::HeightMap::contiguous(heights.values->data(), grid.nx, grid.ny), heights.detrend,
-                          grid, gap, engine_.arena());
-    }
-  }
-  check_finite(gap, grid);
+  auto gap = Buffer<double>::uninitialised(grid.nodes());
+  const Place first = place_of_upper(0);
+  sum_surfaces(scene_, first, engine_.arena(), gap);
   gap_ = std::move(gap);
   stage_seconds_[static_cast<int>(Stage::surface)] += seconds_since(start);
   start = Clock::now();
@@ -106,6 +82,45 @@ void Run::prepare() {
   }
   if (increments_.empty()) {
     step_origin_ = {0, std::min(0.0, solver_->first_touch())};
+    return;
+  }
+  // A solver measures from where the bodies touch when it is made. That is the first place for a loaded run too, or
+  // it would round otherwise than the one that was saved.
+  const Place now = place_of_upper(increments_.back().position.step);
+  if (now == first) return;
+  sum_surfaces(scene_, now, engine_.arena(), gap_);
+  if (plastic_ == nullptr) solver_->gap_changed();
+}
+
+/// What a move changes; empty: nothing moves.
+struct Run::BeforeMove {
+  Buffer<double> gap;
+  plastic::ElasticPlastic::State plastic;
+};
+
+/// The gap follows the step's offset, and the contact is opened. Returns the seconds that took.
+double Run::move_upper_body(const Position& position) {
+  const auto start = Clock::now();
+  const Place from = place_of_upper(position.step - 1), to = place_of_upper(position.step);
+  sum_surfaces(scene_, to, engine_.arena(), gap_);
+  if (plastic_ != nullptr) {
+    const NodeShift before = whole_nodes(from, scene_.grid()).value_or(NodeShift{});
+    const NodeShift after = whole_nodes(to, scene_.grid()).value_or(NodeShift{});
+    plastic_->move_upper_body(after.i - before.i, after.j - before.j);
+  } else {
+    solver_->gap_changed();
+    solver_->restore({{}, 0, solver_->first_touch()});
+  }
+  return seconds_since(start);
+}
+
+/// All but the state of an elastic contact.
+void Run::move_back(const BeforeMove& before) {
+  std::copy(before.gap.begin(), before.gap.end(), gap_.begin());
+  if (plastic_ != nullptr) {
+    plastic_->restore(before.plastic);
+  } else {
+    solver_->gap_changed();
   }
 }
 
@@ -117,7 +132,8 @@ contact::Solution Run::solve(const contact::Load& load, contact::Observer observ
     increment.converged = solution.converged;
     return solution;
   }
-  const plastic::PlasticSolution solution = plastic_->advance(load, observer);
+  const double* ratio = scene_.steps()[static_cast<std::size_t>(increment.position.step)].traction_ratio;
+  const plastic::PlasticSolution solution = plastic_->advance(load, observer, {ratio[0], ratio[1]});
   plastic_fields_->forget();
   increment.converged = solution.converged;
   increment.yield = solution.yield;
@@ -150,11 +166,18 @@ const Increment& Run::advance(const Proceed& proceed) {
   if (position.increment == 0 && solved > 0) {
     step_origin_ = {increments_.back().normal_force, increments_.back().approach};
   }
-  contact::Load load = load_of(scene_.steps()[static_cast<std::size_t>(position.step)], position.increment,
-                               step_origin_, scene_.grid());
+  const Step& step = scene_.steps()[static_cast<std::size_t>(position.step)];
+  contact::Load load = load_of(step, position.increment, step_origin_, scene_.grid());
   if (load.drive == contact::Drive::force) load.target /= contact_modulus_ * scene_.grid().cell_area();
 
   const contact::Solver::State before = plastic_ == nullptr ? solver_->state() : contact::Solver::State{};
+  const bool moves = step.moves() && position.increment == 0 && solved > 0;
+  BeforeMove before_move;
+  if (moves) {
+    before_move.gap = Buffer<double>::uninitialised(gap_.size());
+    std::copy(gap_.begin(), gap_.end(), before_move.gap.begin());
+    if (plastic_ != nullptr) before_move.plastic = plastic_->state();
+  }
   const std::size_t traced = trace_.size();
   const bool certifies = plastic_ == nullptr;  // else the contact alone is one of many within the increment
   const auto observe = [&](const contact::Report& report) {
@@ -166,10 +189,13 @@ const Increment& Run::advance(const Proceed& proceed) {
   Increment increment;
   increment.position = position;
   contact::Solution solution;
+  double moving = 0;  // [s]
   try {
+    if (moves) moving = move_upper_body(position);
     solution = solve(load, observe, increment);
   } catch (...) {
     trace_.resize(traced);
+    if (moves) move_back(before_move);
     if (plastic_ == nullptr) solver_->restore(before);
     throw;
   }
@@ -183,7 +209,8 @@ const Increment& Run::advance(const Proceed& proceed) {
   const double seconds = seconds_since(start);
   increments_.back().wall_seconds = seconds;
   solving_seconds_ += seconds;
-  stage_seconds_[static_cast<int>(Stage::contact)] += seconds;
+  stage_seconds_[static_cast<int>(Stage::surface)] += moving;
+  stage_seconds_[static_cast<int>(Stage::contact)] += seconds - moving;
   if (stress_ != nullptr) {
     increments_.back().stress_missing = true;
     compute_stress(proceed);
@@ -260,7 +287,7 @@ void Run::summarise(const contact::Solution& solution, Increment& increment) {
   increment.tilt[1] = solution.slope_y;
   increment.centre_of_force[0] = sums.force > 0 ? sums.moment_x / sums.force : none;
   increment.centre_of_force[1] = sums.force > 0 ? sums.moment_y / sums.force : none;
-  increment.first_touch = solver_->origin();
+  increment.first_touch = solver_->first_touch();
   increment.contact_area = sums.nodes * grid.cell_area();
   increment.max_pressure = sums.largest * contact_modulus_;
   increment.max_pressure_at[0] = sums.largest_at >= 0 ? grid.x(sums.largest_at % grid.nx) : none;
@@ -325,7 +352,7 @@ void Run::copy_surface_field(Field field, std::span<double> values) {
   const Buffer<double>& g = solver_->deformed_gap();
   const Grid& grid = scene_.grid();
   const double unit = grid.dx;
-  const double first_touch = solver_->origin();
+  const double origin = solver_->origin();
   const Increment& last = increments_.back();
   const auto plane = [&](std::size_t n) {
     return last.tilt[0] * grid.x(static_cast<std::int64_t>(n) % grid.nx) +
@@ -334,8 +361,8 @@ void Run::copy_surface_field(Field field, std::span<double> values) {
   for (std::size_t n = 0; n < gap_.size(); ++n) {
     switch (field) {
       case Field::pressure: values[n] = p[n] * contact_modulus_; break;
-      case Field::gap: values[n] = g[n] * unit - (last.approach - first_touch) + plane(n); break;
-      case Field::displacement: values[n] = g[n] * unit - (gap_[n] - first_touch); break;
+      case Field::gap: values[n] = g[n] * unit - (last.approach - origin) + plane(n); break;
+      case Field::displacement: values[n] = g[n] * unit - (gap_[n] - origin); break;
       default: break;
     }
   }

@@ -17,6 +17,7 @@
 #include "scene/plastic_fields.h"
 #include "scene/scene.h"
 #include "scene/stress_stage.h"
+#include "scene/undeformed_gap.h"
 
 namespace brinell::scene {
 
@@ -40,7 +41,7 @@ struct Increment {
   double approach = 0;                 // [m]
   double tilt[2] = {0, 0};             // slopes of the plane that is added to the gap
   double centre_of_force[2] = {0, 0};  // [m]
-  double first_touch = 0;              // [m]
+  double first_touch = 0;              // smallest gap without pressure, plastic strain included [m]
   double contact_area = 0;             // [m²]
   double max_pressure = 0;             // [Pa]
   double max_pressure_at[2] = {0, 0};  // [m]
@@ -104,6 +105,9 @@ class Run {
   /// Nothing is left for advance() to do.
   bool is_finished() const;
 
+  /// Where the upper body stands during a step.
+  Place place_of_upper(std::int32_t step) const { return scene::place_of_upper(scene_, step); }
+
   const std::vector<double>& depths() const { return scene_.subsurface().depths; }
 
   /// Numbers in a field. Throws Status::wrong_state if the scene does not ask for it.
@@ -123,6 +127,9 @@ class Run {
   using Clock = std::chrono::steady_clock;
 
   void prepare();
+  double move_upper_body(const Position& position);
+  struct BeforeMove;
+  void move_back(const BeforeMove& before);
   contact::Solution solve(const contact::Load& load, contact::Observer observer, Increment& increment);
   void compute_stress(const Proceed& proceed);
   void copy_surface_field(Field field, std::span<double> values);

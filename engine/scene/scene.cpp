@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/fingerprint.h"
 #include "parallel/arena.h"
+#include "scene/undeformed_gap.h"
 #include "subsurface/depths.h"
 
 namespace brinell::scene {
@@ -102,7 +103,19 @@ void add_members(Fingerprint& f, const Heights& h) {
   f.add_bytes(h.values->data(), h.values->size() * sizeof(double));
 }
 
+Which checked(Which body) {
+  require(body == Which::lower || body == Which::upper, Status::invalid_argument,
+          "body = " + std::to_string(static_cast<std::int32_t>(body)) + ": allowed are 0 (lower) and 1 (upper)");
+  return body;
+}
+
 }  // namespace
+
+Which usual_body(const surface::Shape& shape) {
+  const bool texture =
+      std::holds_alternative<surface::Plane>(shape) || std::holds_alternative<surface::Sinusoid>(shape);
+  return texture ? Which::lower : Which::upper;
+}
 
 bool Subsurface::wants(Which body) const {
   return max_von_mises[static_cast<int>(body)] || std::any_of(fields.begin(), fields.end(), [&](Field field) {
@@ -135,7 +148,8 @@ void Scene::set_grid(const Grid& grid, Boundary boundary) {
           "boundary = " + std::to_string(static_cast<std::int32_t>(boundary)) +
               ": allowed are 0 (free) and 1 (periodic)");
   bool holds_heights = false;
-  for (const SurfaceEntry& entry : surfaces_) holds_heights = holds_heights || std::holds_alternative<Heights>(entry);
+  for (const SurfaceEntry& entry : surfaces_)
+    holds_heights = holds_heights || std::holds_alternative<Heights>(entry.form);
   require(!holds_heights || (grid.nx == grid_.nx && grid.ny == grid_.ny), Status::wrong_state,
           "nodes = " + std::to_string(grid.nx) + " x " + std::to_string(grid.ny) +
               ": the grid cannot change, the scene already holds heights on " + std::to_string(grid_.nx) + " x " +
@@ -145,8 +159,7 @@ void Scene::set_grid(const Grid& grid, Boundary boundary) {
 }
 
 void Scene::set_body(Which which, const Body& body) {
-  require(which == Which::lower || which == Which::upper, Status::invalid_argument,
-          "body = " + std::to_string(static_cast<std::int32_t>(which)) + ": allowed are 0 (lower) and 1 (upper)");
+  checked(which);
   if (!body.rigid) {
     require_positive("youngs_modulus", body.youngs_modulus, "Pa");
     require(body.poissons_ratio > -1 && body.poissons_ratio < 0.5, Status::invalid_argument,
@@ -156,8 +169,7 @@ void Scene::set_body(Which which, const Body& body) {
 }
 
 void Scene::set_hardening(Which which, const std::optional<plastic::Hardening>& hardening) {
-  require(which == Which::lower || which == Which::upper, Status::invalid_argument,
-          "body = " + std::to_string(static_cast<std::int32_t>(which)) + ": allowed are 0 (lower) and 1 (upper)");
+  checked(which);
   if (hardening) plastic::check(*hardening);
   hardening_[static_cast<int>(which)] = hardening;
 }
@@ -171,17 +183,18 @@ void Scene::set_layers(const plastic::Layers& layers) {
   layers_ = layers;
 }
 
-void Scene::add(const surface::Shape& shape) {
+void Scene::add(const surface::Shape& shape, std::optional<Which> body) {
   surface::check(shape);
-  surfaces_.emplace_back(shape);
+  surfaces_.push_back({shape, checked(body.value_or(usual_body(shape)))});
 }
 
-void Scene::add(const surface::Roughness& roughness) {
+void Scene::add(const surface::Roughness& roughness, Which body) {
   require(grid_.nx > 0, Status::wrong_state, "roughness needs the grid: set it first");
-  surfaces_.emplace_back(surface::checked(roughness, grid_));
+  surfaces_.push_back({surface::checked(roughness, grid_), checked(body)});
 }
 
-void Scene::add(const surface::HeightMap& heights, surface::Detrend detrend) {
+void Scene::add(const surface::HeightMap& heights, surface::Detrend detrend, Which body) {
+  checked(body);
   require(grid_.nx > 0, Status::wrong_state, "heights need the grid: set it first");
   require(heights.nx == grid_.nx && heights.ny == grid_.ny, Status::invalid_argument,
           "heights have " + std::to_string(heights.nx) + " x " + std::to_string(heights.ny) +
@@ -194,7 +207,7 @@ void Scene::add(const surface::HeightMap& heights, surface::Detrend detrend) {
       copy[static_cast<std::size_t>(j * heights.nx + i)] = heights.at(i, j);
     }
   }
-  surfaces_.emplace_back(Heights{std::make_shared<const Buffer<double>>(std::move(copy)), detrend});
+  surfaces_.push_back({Heights{std::make_shared<const Buffer<double>>(std::move(copy)), detrend}, body});
 }
 
 void Scene::add(const Step& step) {
@@ -221,6 +234,9 @@ void Scene::add(const Step& step) {
   }
   for (const double ratio : step.traction_ratio) {
     require(std::isfinite(ratio), Status::invalid_argument, "traction_ratio = " + text(ratio) + ": must be finite");
+  }
+  for (const double way : step.offset) {
+    require(std::isfinite(way), Status::invalid_argument, "offset = " + text(way) + " m: must be finite");
   }
   steps_.push_back(step);
 }
@@ -268,6 +284,7 @@ void Scene::check_complete() const {
     check_rotation(n);
   }
   check_hardening();
+  check_offsets(*this);
   for (const Which which : {Which::lower, Which::upper}) {
     const std::string label = which == Which::lower ? "lower" : "upper";
     require(!subsurface_.wants(which) || !body(which).rigid, Status::invalid_scene,
@@ -297,10 +314,13 @@ void Scene::check_hardening() const {
       "beside a body that hardens the depths asked for must be those of its layers, (k + 1/2) times " +
           text(layers_.thickness) + " m for " + std::to_string(layers_.count) + " layers");
   for (std::size_t n = 0; n < steps_.size(); ++n) {
-    require(steps_[n].traction_ratio[0] == 0 && steps_[n].traction_ratio[1] == 0, Status::invalid_scene,
-            "step " + std::to_string(n) +
-                ": traction_ratio beside a body that hardens: yielding under shear is not covered; leave one of them "
-                "out");
+    const double* ratio = steps_[n].traction_ratio;
+    require(
+        !identical_ || (ratio[0] == 0 && ratio[1] == 0), Status::invalid_scene,
+        "step " + std::to_string(n) + ": traction_ratio = [" + text(ratio[0]) + ", " + text(ratio[1]) +
+            "] pushes bodies that are each other's mirror image (same_as_lower) in opposite directions: where " +
+            "they harden they are solved as one; give the upper body its own youngs_modulus, poissons_ratio and " +
+            "hardening");
   }
 }
 
@@ -331,8 +351,9 @@ std::uint64_t Scene::fingerprint() const {
   f.add(static_cast<std::int32_t>(boundary_));
   f.add(contact_modulus());
   for (const SurfaceEntry& entry : surfaces_) {
-    f.add(entry.index());
-    std::visit([&](const auto& e) { add_members(f, e); }, entry);
+    f.add(entry.form.index());
+    f.add(static_cast<std::int32_t>(entry.body));
+    std::visit([&](const auto& e) { add_members(f, e); }, entry.form);
   }
   for (const Step& step : steps_) {
     f.add(static_cast<std::int32_t>(step.drive));
@@ -341,6 +362,7 @@ std::uint64_t Scene::fingerprint() const {
     for (const double ratio : step.traction_ratio) f.add(ratio);
     f.add(step.free_rotation);
     for (const double value : step.free_rotation ? step.eccentricity : step.tilt) f.add(value);
+    for (const double way : step.offset) f.add(way);
   }
   f.add(solver_.tolerance);
   f.add(solver_.max_iterations);

@@ -31,7 +31,14 @@ struct Heights {
   surface::Detrend detrend = surface::Detrend::none;
 };
 
-using SurfaceEntry = std::variant<surface::Shape, surface::Roughness, Heights>;
+/// What adds to the gap, and the body that it moves with.
+struct SurfaceEntry {
+  std::variant<surface::Shape, surface::Roughness, Heights> form;
+  Which body = Which::lower;
+};
+
+/// Unless it is said: indenters are the upper body; planes and textures belong to the lower one, as heights do.
+Which usual_body(const surface::Shape& shape);
 
 enum class StepDrive : std::int32_t { none = 0, force = 1, approach = 2, mean_pressure = 3 };
 
@@ -43,6 +50,9 @@ struct Step {
   double eccentricity[2] = {0, 0};    // where that is [m]; read with free_rotation
   double tilt[2] = {0, 0};            // slopes of the plane that is added to the gap; read without
   double traction_ratio[2] = {0, 0};  // full sliding: shear along x, y on the lower body / pressure
+  double offset[2] = {0, 0};          // by which the upper body moves before the step [m]
+
+  bool moves() const { return offset[0] != 0 || offset[1] != 0; }
 };
 
 struct SolverSettings {
@@ -73,9 +83,10 @@ class Scene {
   void set_identical(bool identical);
   /// In which a body that hardens is divided.
   void set_layers(const plastic::Layers& layers);
-  void add(const surface::Shape& shape);
-  void add(const surface::Roughness& roughness);
-  void add(const surface::HeightMap& heights, surface::Detrend detrend);
+  /// body: whose surface it is; nothing: the usual one.
+  void add(const surface::Shape& shape, std::optional<Which> body = {});
+  void add(const surface::Roughness& roughness, Which body = Which::lower);
+  void add(const surface::HeightMap& heights, surface::Detrend detrend, Which body = Which::lower);
   void add(const Step& step);
   void set_solver(const SolverSettings& solver);
   void set_subsurface(const Subsurface& wanted);

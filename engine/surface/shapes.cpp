@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
-#include "base/buffer.h"
 #include "surface/ordered_sum.h"
 #include "surface/portable_math.h"
 #include "surface/surface_checks.h"
@@ -86,43 +86,59 @@ struct RollerProfile {
   }
 };
 
-template <class Body>
-void for_rows(const Grid& grid, const parallel::Arena& arena, const Body& body) {
+/// Distances of the nodes from an entry's origin, along x and y.
+struct Distances {
+  std::vector<double> x, y;
+
+  Distances(Centre centre, const Grid& grid, Boundary boundary)
+      : x(static_cast<std::size_t>(grid.nx)), y(static_cast<std::size_t>(grid.ny)) {
+    for (std::int64_t i = 0; i < grid.nx; ++i) x[static_cast<std::size_t>(i)] = grid.x(i) - centre.x;
+    for (std::int64_t j = 0; j < grid.ny; ++j) y[static_cast<std::size_t>(j)] = grid.y(j) - centre.y;
+    if (boundary == Boundary::free) return;
+    for (double& one : x) one = std::remainder(one, static_cast<double>(grid.nx) * grid.dx);
+    for (double& one : y) one = std::remainder(one, static_cast<double>(grid.ny) * grid.dy);
+  }
+};
+
+/// gap += height(i, j).
+template <class Height>
+void add_heights(const Grid& grid, double* gap, const parallel::Arena& arena, const Height& height) {
   arena.for_chunks(grid.ny, rows_per_chunk(grid.nx), [&](std::int64_t begin, std::int64_t end, int) {
-    for (std::int64_t j = begin; j < end; ++j) body(j);
+    for (std::int64_t j = begin; j < end; ++j) {
+      double* row = gap + j * grid.nx;
+      for (std::int64_t i = 0; i < grid.nx; ++i) {
+        row[i] += height(static_cast<std::size_t>(i), static_cast<std::size_t>(j));
+      }
+    }
   });
 }
 
 template <class ShapeProfile>
-void add_profile(const ShapeProfile& profile, Centre centre, const Grid& grid, double* gap,
+void add_profile(const ShapeProfile& profile, const Distances& at, const Grid& grid, double* gap,
                  const parallel::Arena& arena) {
-  for_rows(grid, arena, [&](std::int64_t j) {
-    const double y = grid.y(j) - centre.y;
-    double* row = gap + j * grid.nx;
-    for (std::int64_t i = 0; i < grid.nx; ++i) row[i] += profile(grid.x(i) - centre.x, y);
-  });
+  add_heights(grid, gap, arena, [&](std::size_t i, std::size_t j) { return profile(at.x[i], at.y[j]); });
 }
 
-void add(const Plane&, Centre, const Grid&, double*, const parallel::Arena&) {}
+void add(const Plane&, const Distances&, const Grid&, double*, const parallel::Arena&) {}
 
-void add(const Sphere& shape, Centre centre, const Grid& grid, double* gap, const parallel::Arena& arena) {
-  add_profile(EllipsoidProfile(shape), centre, grid, gap, arena);
+void add(const Sphere& shape, const Distances& at, const Grid& grid, double* gap, const parallel::Arena& arena) {
+  add_profile(EllipsoidProfile(shape), at, grid, gap, arena);
 }
 
-void add(const Ellipsoid& shape, Centre centre, const Grid& grid, double* gap, const parallel::Arena& arena) {
-  add_profile(EllipsoidProfile(shape), centre, grid, gap, arena);
+void add(const Ellipsoid& shape, const Distances& at, const Grid& grid, double* gap, const parallel::Arena& arena) {
+  add_profile(EllipsoidProfile(shape), at, grid, gap, arena);
 }
 
-void add(const Cone& shape, Centre centre, const Grid& grid, double* gap, const parallel::Arena& arena) {
-  add_profile(ConeProfile(shape), centre, grid, gap, arena);
+void add(const Cone& shape, const Distances& at, const Grid& grid, double* gap, const parallel::Arena& arena) {
+  add_profile(ConeProfile(shape), at, grid, gap, arena);
 }
 
-void add(const FlatPunch& shape, Centre centre, const Grid& grid, double* gap, const parallel::Arena& arena) {
-  add_profile(FlatPunchProfile{shape}, centre, grid, gap, arena);
+void add(const FlatPunch& shape, const Distances& at, const Grid& grid, double* gap, const parallel::Arena& arena) {
+  add_profile(FlatPunchProfile{shape}, at, grid, gap, arena);
 }
 
-void add(const Roller& shape, Centre centre, const Grid& grid, double* gap, const parallel::Arena& arena) {
-  add_profile(RollerProfile{shape}, centre, grid, gap, arena);
+void add(const Roller& shape, const Distances& at, const Grid& grid, double* gap, const parallel::Arena& arena) {
+  add_profile(RollerProfile{shape}, at, grid, gap, arena);
 }
 
 // 1 − cos(2 pi x / wavelength), without cancellation near the crest.
@@ -133,15 +149,14 @@ double fall_from_crest(double x, double wavelength) {
 }
 
 // With a and b the falls along x and y: 1 − (1 − a)(1 − b) = a + b·(1 − a).
-void add(const Sinusoid& shape, Centre centre, const Grid& grid, double* gap, const parallel::Arena& arena) {
-  auto along_x = Buffer<double>::uninitialised(grid.nx);
-  for (std::int64_t i = 0; i < grid.nx; ++i) along_x[i] = fall_from_crest(grid.x(i) - centre.x, shape.wavelength_x);
-  for_rows(grid, arena, [&](std::int64_t j) {
-    const double along_y = fall_from_crest(grid.y(j) - centre.y, shape.wavelength_y);
-    double* row = gap + j * grid.nx;
-    for (std::int64_t i = 0; i < grid.nx; ++i) {
-      row[i] += shape.amplitude * (along_x[i] + along_y * (1.0 - along_x[i]));
-    }
+void add(const Sinusoid& shape, const Distances& at, const Grid& grid, double* gap, const parallel::Arena& arena) {
+  std::vector<double> along_x(at.x.size()), along_y(at.y.size());
+  std::transform(at.x.begin(), at.x.end(), along_x.begin(),
+                 [&](double x) { return fall_from_crest(x, shape.wavelength_x); });
+  std::transform(at.y.begin(), at.y.end(), along_y.begin(),
+                 [&](double y) { return fall_from_crest(y, shape.wavelength_y); });
+  add_heights(grid, gap, arena, [&](std::size_t i, std::size_t j) {
+    return shape.amplitude * (along_x[i] + along_y[j] * (1.0 - along_x[i]));
   });
 }
 
@@ -215,12 +230,13 @@ void check(const Shape& shape) {
 }
 
 void add_to_gap(const Shape& shape, Centre centre, const Grid& grid, std::span<double> gap,
-                const parallel::Arena& arena) {
+                const parallel::Arena& arena, Boundary boundary) {
   check(shape);
   check_gap(grid, gap);
   if (!std::isfinite(centre.x)) refuse("centre x of a shape", centre.x, "finite [m]");
   if (!std::isfinite(centre.y)) refuse("centre y of a shape", centre.y, "finite [m]");
-  std::visit([&](const auto& one) { add(one, centre, grid, gap.data(), arena); }, shape);
+  const Distances at(centre, grid, boundary);
+  std::visit([&](const auto& one) { add(one, at, grid, gap.data(), arena); }, shape);
 }
 
 }  // namespace brinell::surface

@@ -80,8 +80,8 @@ struct Centre {
 /// Throws Status::invalid_argument for parameters that describe no such shape.
 void check(const Shape& shape);
 
-/// gap += shape, at every node.
+/// gap += shape, at every node. On a periodic boundary what leaves the grid on one side comes back on the other.
 void add_to_gap(const Shape& shape, Centre centre, const Grid& grid, std::span<double> gap,
-                const parallel::Arena& arena);
+                const parallel::Arena& arena, Boundary boundary = Boundary::free);
 
 }  // namespace brinell::surface

@@ -47,7 +47,7 @@ increments = "all"
 SUMMARY_KEYS = {"title", "converged", "version", "engine", "plan", "increments", "wall_seconds", "stage_seconds"}
 INCREMENT_KEYS = {
     "step", "increment", "normal_force", "approach", "tilt", "centre_of_force", "first_touch", "contact_area",
-    "contact_nodes", "max_pressure", "max_pressure_at", "mean_gap", "max_von_mises", "max_von_mises_at",
+    "contact_nodes", "offset", "max_pressure", "max_pressure_at", "mean_gap", "max_von_mises", "max_von_mises_at",
     "upper_max_von_mises", "upper_max_von_mises_at", "max_equivalent_plastic_strain", "max_equivalent_plastic_strain_at",
     "plastic_nodes", "iterations",
     "convolutions", "certificate", "wall_seconds"}
@@ -330,6 +330,45 @@ increments = "all"
                     self.assertEqual(result.stdout, "")
                 self.assertFalse(self.out.exists())
 
+    # ------------------------------------------------------------------ an upper body that moves
+
+    def test_offsets_move_the_upper_body_and_add_up(self):
+        self.tilt_scene("normal_force = 0.02", "normal_force = 0.02\noffset = [2.1e-6, -1.6e-6]",
+                        "normal_force = 0.01\noffset = [-0.35e-6, 0]",
+                        "normal_force = 0.02\noffset = [-1.75e-6, 1.6e-6]")
+        self.expect(self.run_scene(), 0)
+        increments = self.summary()["increments"]
+        self.assertEqual(increments[0]["offset"], [0, 0])
+        self.assertEqual(increments[3]["offset"], [0, 0])
+        for found, wanted in zip(increments[2]["offset"], (1.75e-6, -1.6e-6)):
+            self.assertAlmostEqual(found, wanted, delta=1e-20)
+        for increment in increments:
+            for found, wanted in zip(increment["centre_of_force"], increment["offset"]):
+                self.assertAlmostEqual(found, wanted, delta=2e-8)  # a flat edge between nodes: a part of a cell
+        self.expect(self.brinell("check", self.scene), 0)
+        plan = self.brinell("plan", self.scene)
+        self.expect(plan, 0)
+        self.assertIn("gap before the upper body moves", plan.stdout)
+
+    def test_bad_offsets_and_bodies_are_status_2(self):
+        cases = [
+            ("offset = 1e-6", "", ["[[step]] 1", "offset = ", "[x, y]"]),
+            ("offset = [1e-6]", "", ["[[step]] 1", "offset", "found 1 value"]),
+            ("offset = [nan, 0]", "", ["[[step]] 1", "offset", "finite"]),
+            ("ofset = [1e-6, 0]", "", ["'ofset'", "'offset'"]),
+            ("offset = [1e-6, 0]", 'shape = "rough"\nhurst = 0.8\nrms_slope = 0.1\nbody = "upper"',
+             ["offset", "rough", "multiples of the spacing, 7e-07 x 8e-07 m"]),
+            ("offset = [1e-6, 0]", 'shape = "plane"\nbody = "both"', ["[[surface]] 2", "body", "lower, upper"]),
+        ]
+        for step, surface, words in cases:
+            with self.subTest(step + surface):
+                more = "\n[[surface]]\n" + surface if surface else ""
+                self.tilt_scene("normal_force = 0.02\n" + step + more)
+                for result in (self.run_scene(), self.brinell("check", self.scene)):
+                    self.expect(result, 2, "brinell: ", *words)
+                    self.assertEqual(result.stdout, "")
+                self.assertFalse(self.out.exists())
+
     # ------------------------------------------------------------------ below the surface
 
     def below_scene(self, output, layers="layers = 20\nlayer_thickness = 0.7e-6", step="", upper="rigid = true"):
@@ -520,6 +559,18 @@ fields = ["plastic_strain", "equivalent_plastic_strain", "residual_stress", "res
         self.assertEqual(sizes["equivalent_plastic_strain"], "14 24 24")
         self.assertEqual(sizes["residual_displacement"], "1 24 24")
 
+    def test_a_body_that_hardens_is_pressed_elsewhere_and_slid_on(self):
+        self.hardening_scene("normal_force = 0.0\n", "normal_force = 0.0\n[[step]]\nnormal_force = 1.0\n"
+                             "offset = [4e-6, 0]\ntraction_ratio = [0, 0.3]\n")
+        self.expect(self.run_scene(), 0)
+        increments = self.summary()["increments"]
+        once, again = increments[-3], increments[-1]
+        self.assertEqual(again["offset"], [4e-6, 0])
+        self.assertGreater(again["plastic_nodes"], 1.1 * once["plastic_nodes"])
+        self.assertGreater(again["centre_of_force"][0], 3e-6)
+        self.assertGreater(again["first_touch"], 0)  # the imprints
+        self.assertLessEqual(again["certificate"]["yield"], 1e-7)
+
     def test_identical_bodies_harden_alike(self):
         self.hardening_scene("[upper]\nrigid = true", "[upper]\nsame_as_lower = true")
         self.expect(self.run_scene(), 0)
@@ -536,6 +587,11 @@ fields = ["plastic_strain", "equivalent_plastic_strain", "residual_stress", "res
             ("nodes = [24, 24]", 'nodes = [24, 24]\nboundary = "periodic"', ["free boundary"]),
             ("[upper]\nrigid = true", "[upper]\nrigid = true\nhardening = {law = \"perfect\", yield_stress = 1e9}",
              ["hardening", "rigid = true"]),
+            ("[upper]\nrigid = true", "[upper]\nsame_as_lower = true\n[[step]]\nnormal_force = 1.0\noffset = [2e-6, 0]",
+             ["offset = [2e-06, 0]", "same_as_lower"]),
+            ("[upper]\nrigid = true",
+             "[upper]\nsame_as_lower = true\n[[step]]\nnormal_force = 1.0\ntraction_ratio = [0.1, 0]",
+             ["traction_ratio = [0.1, 0]", "same_as_lower"]),
         ]
         for old, new, words in cases:
             with self.subTest(new):

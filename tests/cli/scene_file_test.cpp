@@ -196,6 +196,20 @@ TEST(SceneFile, reads_where_the_force_acts_or_the_slopes) {
   EXPECT_THAT(refusal(with("eccentricity = [0.0, 1e-6]", "tilt = [nan, 0]")), HasSubstr("finite"));
 }
 
+TEST(SceneFile, reads_whose_surfaces_move_and_by_how_much) {
+  const SceneFile scene = parse_scene("scene.toml", with("profile = \"exact\"", "body = \"lower\""));
+  EXPECT_EQ(scene.surfaces[0].body, "lower");
+  EXPECT_EQ(scene.surfaces[1].body, "");
+  EXPECT_FALSE(scene.steps[0].offset);
+  const SceneFile moved = parse_scene("scene.toml", with("[0.0, 1e-6]", "[0.0, 1e-6]\noffset = [-2e-6, 3]"));
+  EXPECT_THAT(moved.steps[0].offset.value(), ElementsAre(-2e-6, 3));
+  EXPECT_THAT(refusal(with("profile = \"exact\"", "body = \"uper\"")),
+              AllOf(HasSubstr(":22:"), HasSubstr("'upper'")));
+  EXPECT_THAT(refusal(with("[0.0, 1e-6]", "[0.0, 1e-6]\noffset = 2e-6")),
+              AllOf(HasSubstr("offset = "), HasSubstr("[x, y]")));
+  EXPECT_THAT(refusal(with("[0.0, 1e-6]", "[0.0, 1e-6]\noffset = [inf, 0]")), HasSubstr("finite"));
+}
+
 TEST(SceneFile, wants_its_parts_to_fit) {
   EXPECT_THAT(refusal(with("radius = 105e-6", "")),
               AllOf(HasSubstr("[[surface]] 1"), HasSubstr("radius is missing")));

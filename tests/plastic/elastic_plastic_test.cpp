@@ -106,7 +106,7 @@ struct DirectState {
   std::vector<double> gap;
 };
 
-DirectState by_sums(Indentation& pressed, PlasticBody& body, double weight) {
+DirectState by_sums(Indentation& pressed, PlasticBody& body, double weight, const TractionRatio& shear = {}) {
   const Region& region = body.region();
   const Box& box = region.box;
   const Grid& grid = pressed.grid;
@@ -158,9 +158,14 @@ DirectState by_sums(Indentation& pressed, PlasticBody& body, double weight) {
           for (std::int64_t x = 0; x < grid.nx; ++x) {
             const double p = pressed.solver.pressure()[static_cast<std::size_t>(y * grid.nx + x)];
             if (!(p > 0)) continue;
-            const auto sigma = cell(influence::Traction::pressure, region.i0 + i - x, region.j0 + j - y);
-            for (std::size_t a = 0; a < 6; ++a) {
-              state.stress[at(i, j, k)][a] += sigma[a] * p * pressed.contact_modulus;
+            for (const auto& [traction, part] :
+                 {std::pair{influence::Traction::pressure, 1.0}, std::pair{influence::Traction::shear_x, shear[0]},
+                  std::pair{influence::Traction::shear_y, shear[1]}}) {
+              if (part == 0) continue;
+              const auto sigma = cell(traction, region.i0 + i - x, region.j0 + j - y);
+              for (std::size_t a = 0; a < 6; ++a) {
+                state.stress[at(i, j, k)][a] += part * sigma[a] * p * pressed.contact_modulus;
+              }
             }
           }
         }
@@ -214,6 +219,29 @@ TEST(ElasticPlastic, certificate_holds_by_sums_of_its_own) {
       pressed.grid, Boundary::free, direct.gap, pressed.pressure(), solution.contact.approach, contact::Drive::force,
       0.075 / (kModulus * pressed.grid.cell_area()));
   EXPECT_LE(expected.worst(), tolerance);
+}
+
+TEST(ElasticPlastic, certificate_holds_by_sums_of_its_own_in_sliding) {
+  constexpr double tolerance = 1e-7;
+  constexpr TractionRatio shear{0.3, -0.1};
+  Indentation pressed(lower(kSteel), kModulus, 14, 0.9e-6, {10, 0.8e-6}, tolerance);
+  const auto press = [&](double force) {
+    return pressed.loop.advance(
+        {contact::Drive::force, force / (kModulus * pressed.grid.cell_area())},
+        [](const contact::Report&) { return true; }, shear);
+  };
+  ASSERT_TRUE(press(0.05).converged);
+  PlasticBody& body = *pressed.loop.body(0);
+  const Region region = body.region();
+  const std::vector<double> before(body.equivalent().begin(), body.equivalent().end());
+  const PlasticSolution solution = press(0.06);
+  ASSERT_TRUE(solution.converged);
+  ASSERT_TRUE(body.region() == region) << "plastic strain before stands elsewhere";
+  ASSERT_GT(body.largest().cuboids, 20);
+  // As without shear.
+  EXPECT_NEAR(worst_yield(body, by_sums(pressed, body, 1, shear).stress, before), solution.yield, 1e-10);
+  EXPECT_LE(solution.yield, tolerance);
+  EXPECT_GT(worst_yield(body, by_sums(pressed, body, 1).stress, before), 1e3 * tolerance);
 }
 
 TEST(ElasticPlastic, by_force_and_by_approach_is_the_same) {

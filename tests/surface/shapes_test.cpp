@@ -190,6 +190,23 @@ TEST(Shapes, move_with_their_centre_and_add_up) {
   }
 }
 
+TEST(Shapes, come_back_on_the_other_side_of_a_periodic_boundary) {
+  const Grid grid{12, 10, 0x1p-13, 0x1p-14};  // spacings that round nothing
+  for (const Shape& shape : kShapes) {
+    const auto still = gap_of(shape, grid);
+    for (const auto& [by_i, by_j] : {std::pair{0, 0}, std::pair{3, 4}, std::pair{-5, 13}, std::pair{24, -1}}) {
+      std::vector<double> moved(grid.nodes());
+      add_to_gap(shape, {by_i * grid.dx, by_j * grid.dy}, grid, moved, parallel::Arena(1), Boundary::periodic);
+      for (std::int64_t j = 0; j < grid.ny; ++j) {
+        for (std::int64_t i = 0; i < grid.nx; ++i) {
+          const std::int64_t to_i = (i + by_i + 10 * grid.nx) % grid.nx, to_j = (j + by_j + 10 * grid.ny) % grid.ny;
+          EXPECT_EQ(moved[to_j * grid.nx + to_i], still[j * grid.nx + i]) << shape.index();
+        }
+      }
+    }
+  }
+}
+
 TEST(Shapes, have_the_same_bits_for_any_number_of_threads) {
   const Grid grid{301, 257, 1e-5, 1e-5};
   for (const Shape& shape : kShapes) {

@@ -58,6 +58,7 @@ Json increment_json(const brn_increment& increment) {
           {"normal_force", increment.normal_force},
           {"approach", increment.approach},
           {"tilt", pair_json(increment.tilt)},
+          {"offset", pair_json(increment.offset)},
           {"centre_of_force", pair_json(increment.centre_of_force)},
           {"first_touch", increment.first_touch},
           {"contact_area", increment.contact_area},
