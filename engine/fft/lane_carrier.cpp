@@ -102,7 +102,7 @@ class ByLanes final : public LaneCarrier<Real> {
   void rows_forward(std::int64_t begin, std::int64_t end, const Real* source, Real* field,
                     Real* scratch) const override {
     for (int turn = 0; turn < kTurnsOfRows; ++turn) {
-      kernels_.rows_forward(rows_, begin, end, source, field, scratch);
+      kernels_.rows_forward(rows_, 0, end - begin, source, field + begin * 2 * lanes_, scratch);
     }
   }
 
