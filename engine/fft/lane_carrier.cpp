@@ -33,9 +33,9 @@ std::int64_t cheapest_length(std::int64_t n, const Cost& cost) {
   return best;
 }
 
-/// Fields larger than this are written past the caches, and so is the result: measured, they gain from 3 MB on, on a
-/// second-level cache of 1 MB and a shared one of 32 MB.
-constexpr std::size_t kStaysInCache = std::size_t{3} << 20;
+/// Fields larger than this are written past the caches, and so is the result: measured, convolution and one pass over
+/// its result together gain from 1.5 MB on, on a second-level cache of 1 MB and a shared one of 32 MB.
+constexpr std::size_t kStaysInCache = std::size_t{3} << 19;
 
 /// More than one only to see whether the regression check notices (bench/regress): the same result, but later.
 #ifdef BRINELL_PLANT_SLOWDOWN
