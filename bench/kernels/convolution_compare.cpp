@@ -69,7 +69,7 @@ void compare(const Options& options, std::int64_t n) {
   }
 
   const auto source = bench::random_source<Real>(n);
-  std::vector<Real> result(source.size());
+  Buffer<Real> result(source.size());  // aligned as the fields of a solve are
   const bool wall = options.threads > 1;
   const int repeats = static_cast<int>(std::max<std::int64_t>(1, 1024 * 1024 / (n * n)));
   for (int round = -1; round < options.rounds; ++round) {  // the first warms up

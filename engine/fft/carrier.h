@@ -50,7 +50,8 @@ class Carrier {
   virtual bool transforms_kernels() const { return false; }
   virtual void spectrum_block(std::int64_t, Parity, Parity, const Real*, Real*, Real*) const {}
 
-  virtual void rows_forward(std::int64_t begin, std::int64_t end, const Real* source, Real* field,
+  /// `rows` begins with row `begin` of the source, `result` below with row 0.
+  virtual void rows_forward(std::int64_t begin, std::int64_t end, const Real* rows, Real* field,
                             Real* scratch) const = 0;
   virtual void convolve_block(std::int64_t block, const Spectrum<Real>& spectrum, Real* field,
                               Real* scratch) const = 0;

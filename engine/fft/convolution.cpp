@@ -65,12 +65,17 @@ struct Convolution<Real>::Implementation {
   /// A kernel's quarter transformed as sources are.
   Spectrum<Real> transformed_kernel(const Real* kernel, Parity parity_x, Parity parity_y,
                                     Workspace<Real>& workspace) const {
-    Buffer<Real>& quarter = workspace.kernel;
-    if (quarter.empty()) quarter = Buffer<Real>::uninitialised(static_cast<std::size_t>(nx * ny));
-    std::copy_n(kernel, quarter.size(), quarter.data());
-    for (std::int64_t i = 0; parity_y == Parity::even && i < nx; ++i) quarter[static_cast<std::size_t>(i)] /= 2;
-    for (std::int64_t j = 0; parity_x == Parity::even && j < ny; ++j) quarter[static_cast<std::size_t>(j * nx)] /= 2;
-    rows_forward(quarter.data(), workspace);
+    // Some rows at a time: a copy of the whole kernel would be as large as the spectrum.
+    const std::int64_t rows = std::min(rows_of_a_task(nx), ny);
+    const std::int64_t tile = (rows * nx + 7) / 8 * 8;
+    Buffer<Real> tiles = Buffer<Real>::uninitialised(static_cast<std::size_t>(tile * backend.arena.threads()));
+    backend.arena.for_chunks(ny, rows, [&](std::int64_t begin, std::int64_t end, int slot) {
+      Real* quarter = tiles.data() + slot * tile;
+      std::copy(kernel + begin * nx, kernel + end * nx, quarter);
+      for (std::int64_t i = 0; parity_y == Parity::even && begin == 0 && i < nx; ++i) quarter[i] /= 2;
+      for (std::int64_t j = 0; parity_x == Parity::even && j < end - begin; ++j) quarter[j * nx] /= 2;
+      carrier->rows_forward(begin, end, quarter, workspace.field.data(), scratch_of(workspace, slot));
+    });
     Spectrum<Real> spectrum{Buffer<Real>::uninitialised(carrier->spectrum_size()), parity_x, parity_y};
     for_blocks(workspace, [&](std::int64_t block, Real* scratch) {
       carrier->spectrum_block(block, parity_x, parity_y, workspace.field.data(), spectrum.values.data(), scratch);
@@ -97,7 +102,7 @@ struct Convolution<Real>::Implementation {
 
   void rows_forward(const Real* source, Workspace<Real>& workspace) const {
     backend.arena.for_chunks(ny, rows_of_a_task(nx), [&](std::int64_t begin, std::int64_t end, int slot) {
-      carrier->rows_forward(begin, end, source, workspace.field.data(), scratch_of(workspace, slot));
+      carrier->rows_forward(begin, end, source + begin * nx, workspace.field.data(), scratch_of(workspace, slot));
     });
   }
   void rows_backward(Real* result, Workspace<Real>& workspace) const {

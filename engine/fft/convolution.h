@@ -55,7 +55,6 @@ struct Workspace {
   Buffer<Real> field;            // the transformed rows; layout: private to the Convolution
   Buffer<Real> scratch;          // one part for each thread
   std::size_t scratch_size = 0;  // of one part, in Reals
-  Buffer<Real> kernel;           // one on its way to its spectrum; empty until there is one
 };
 
 /// A source in frequency space, to be convolved with many kernels; made by Convolution::transform.

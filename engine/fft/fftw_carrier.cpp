@@ -124,11 +124,10 @@ class FreeByFftw final : public Carrier<Real> {
     Real* row = scratch;
     Real* transformed = scratch + row_;
     std::fill(row + 2 * nx_, row + 2 * length_x_, Real{0});
-    for (std::int64_t j = begin; j < end; ++j) {
-      const Real* values = source + j * nx_;
+    for (std::int64_t j = begin; j < end; ++j, source += nx_) {
       for (std::int64_t i = 0; i < nx_; ++i) {
-        row[2 * i] = values[i] * turn_x_[2 * i];
-        row[2 * i + 1] = values[i] * turn_x_[2 * i + 1];
+        row[2 * i] = source[i] * turn_x_[2 * i];
+        row[2 * i + 1] = source[i] * turn_x_[2 * i + 1];
       }
       forward_x_(row, transformed);
       blocks_.scatter_row(transformed, j, field);
@@ -308,8 +307,8 @@ class PeriodicByFftw final : public Carrier<Real> {
 
   void rows_forward(std::int64_t begin, std::int64_t end, const Real* source, Real* field,
                     Real* scratch) const override {
-    for (std::int64_t j = begin; j < end; ++j) {
-      std::copy(source + j * nx_, source + (j + 1) * nx_, scratch);
+    for (std::int64_t j = begin; j < end; ++j, source += nx_) {
+      std::copy(source, source + nx_, scratch);
       forward_x_(scratch, scratch + row_);
       blocks_.scatter_row(scratch + row_, j, field);
     }

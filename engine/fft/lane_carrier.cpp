@@ -33,9 +33,9 @@ std::int64_t cheapest_length(std::int64_t n, const Cost& cost) {
   return best;
 }
 
-/// Fields larger than this are written past the caches: measured, they gain from 3 MB on, on a second-level cache of
-/// 1 MB and a shared one of 32 MB.
-constexpr std::size_t kStaysInCache = std::size_t{3} << 20;
+/// Fields larger than this are written past the caches, and so is the result: measured, convolution and one pass over
+/// its result together gain from 1.5 MB on, on a second-level cache of 1 MB and a shared one of 32 MB.
+constexpr std::size_t kStaysInCache = std::size_t{3} << 19;
 
 /// More than one only to see whether the regression check notices (bench/regress): the same result, but later.
 #ifdef BRINELL_PLANT_SLOWDOWN
@@ -80,7 +80,7 @@ class ByLanes final : public LaneCarrier<Real> {
   std::int64_t blocks() const override { return rows_.positions; }
   std::size_t field_size() const override { return static_cast<std::size_t>(rows_.block_stride * blocks()); }
   std::size_t scratch_size() const override {
-    return static_cast<std::size_t>(std::max(3 * rows_.length, 2 * lanes_ * length_y_));
+    return static_cast<std::size_t>(std::max(3 * rows_.length, 2 * lanes_ * (length_y_ + simd::kMaxRadix)));
   }
   std::size_t spectrum_size() const override { return static_cast<std::size_t>(blocks() * length_y_ * lanes_); }
 
@@ -102,7 +102,7 @@ class ByLanes final : public LaneCarrier<Real> {
   void rows_forward(std::int64_t begin, std::int64_t end, const Real* source, Real* field,
                     Real* scratch) const override {
     for (int turn = 0; turn < kTurnsOfRows; ++turn) {
-      kernels_.rows_forward(rows_, begin, end, source, field, scratch);
+      kernels_.rows_forward(rows_, 0, end - begin, source, field + begin * 2 * lanes_, scratch);
     }
   }
 

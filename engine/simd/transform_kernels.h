@@ -21,6 +21,7 @@ namespace brinell::simd {
 
 inline constexpr int kMaxStages = 24;
 inline constexpr int kMaxPieces = 24;
+inline constexpr int kMaxRadix = 8;
 
 /// A tree of given length and root; see above. Radices are 2, 3, 4, 5 or 8.
 template <class Real>
@@ -45,7 +46,7 @@ struct RowTransform {
   std::int64_t length;        // multiple of lanes
   std::int64_t positions;     // over all pieces
   std::int64_t block_stride;  // of the field [block][row][re, im], in Reals; one block = one vector of frequencies
-  bool past_caches;           // the field is too large to stay in cache: it is written around it
+  bool past_caches;           // field and result are too large to stay in cache: they are written around it
   std::int32_t pieces;        // 0: free boundary, tree[0] takes the row as it is
   TransformTree<Real> tree[kMaxPieces];
   const Real* lane_twiddles;  // [group][s = 1 … lanes−1][re, im][lane]
@@ -89,7 +90,8 @@ struct TransformKernels {
   void (*rows_backward)(const RowTransform<Real>& transform, std::int64_t begin, std::int64_t end, const Real* field,
                         Real* result, Real* scratch);
 
-  /// Forward, times spectrum, backward, in place on one block of the field. scratch: 2·lanes·length Reals.
+  /// Forward, times spectrum, backward, in place on one block of the field. scratch:
+  /// 2·lanes·(length + kMaxRadix) Reals.
   void (*free_block)(const ColumnTransform<Real>& transform, const BlockProduct<Real>& product, Real* field,
                      Real* scratch);
   void (*periodic_block)(const ColumnTransform<Real>& transform, const BlockProduct<Real>& product, Real* field);

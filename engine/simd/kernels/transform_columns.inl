@@ -96,7 +96,7 @@ template <class V, std::size_t R, bool all, class Real>
   store_parts(x, z, z_part);
 }
 /// The reverse, of which only the real part of the given rows is wanted.
-template <class V, std::size_t R, bool all, class Real>
+template <class V, std::size_t R, bool all, bool past_caches, class Real>
 [[gnu::always_inline]] inline void join_real_step(Real* row, std::int64_t part, std::int64_t given,
                                                   const Real* twiddles, const Real* z, std::int64_t z_part) {
   Complex<V> x[R];
@@ -106,39 +106,42 @@ template <class V, std::size_t R, bool all, class Real>
     if (!all && static_cast<std::int64_t>(s) >= given) return;
     Real* place = row + static_cast<std::int64_t>(s) * part;
     if constexpr (s == 0) {
-      x[s].re.store_unaligned(place);
+      put<past_caches>(x[s].re, place);
     } else {
-      (x[s].re * V(twiddles[2 * s - 2]) + x[s].im * V(twiddles[2 * s - 1])).store_unaligned(place);
+      put<past_caches>(x[s].re * V(twiddles[2 * s - 2]) + x[s].im * V(twiddles[2 * s - 1]), place);
     }
   });
 }
 
-/// The first stage of a real sequence of R·h rows, `stride` Reals apart, of which the first `ny` are given.
+/// The first stage of a real sequence of R·h rows, `stride` Reals apart, of which the first `ny` are given. Each part
+/// of z is followed by a gap.
 template <class Arch, std::size_t R, class Real>
-void split_real(const Real* rows, std::int64_t stride, std::int64_t ny, std::int64_t h, const Real* twiddles,
-                Real* z) {
+void split_real(const Real* rows, std::int64_t stride, std::int64_t ny, std::int64_t h, const Real* twiddles, Real* z,
+                std::int64_t gap = 0) {
   using V = Batch<Arch, Real>;
   constexpr std::int64_t step = 2 * kLanes<Arch, Real>;
+  const std::int64_t part = h * step + gap;
   const std::int64_t all = ny - static_cast<std::int64_t>(R - 1) * h;  // steps with every part given
   std::int64_t j = 0;
-  for (; j < all; ++j)
-    split_real_step<V, R, true>(rows + j * stride, h * stride, R, twiddles, z + j * step, h * step);
+  for (; j < all; ++j) split_real_step<V, R, true>(rows + j * stride, h * stride, R, twiddles, z + j * step, part);
   for (; j < h; ++j) {
-    split_real_step<V, R, false>(rows + j * stride, h * stride, (ny - j + h - 1) / h, twiddles, z + j * step,
-                                 h * step);
+    split_real_step<V, R, false>(rows + j * stride, h * stride, (ny - j + h - 1) / h, twiddles, z + j * step, part);
   }
 }
-template <class Arch, std::size_t R, class Real>
-void join_real(Real* rows, std::int64_t stride, std::int64_t ny, std::int64_t h, const Real* twiddles,
-               const Real* z) {
+template <class Arch, std::size_t R, bool past_caches = false, class Real>
+void join_real(Real* rows, std::int64_t stride, std::int64_t ny, std::int64_t h, const Real* twiddles, const Real* z,
+               std::int64_t gap = 0) {
   using V = Batch<Arch, Real>;
   constexpr std::int64_t step = 2 * kLanes<Arch, Real>;
+  const std::int64_t part = h * step + gap;
   const std::int64_t all = ny - static_cast<std::int64_t>(R - 1) * h;
   std::int64_t j = 0;
-  for (; j < all; ++j) join_real_step<V, R, true>(rows + j * stride, h * stride, R, twiddles, z + j * step, h * step);
+  for (; j < all; ++j) {
+    join_real_step<V, R, true, past_caches>(rows + j * stride, h * stride, R, twiddles, z + j * step, part);
+  }
   for (; j < h; ++j) {
-    join_real_step<V, R, false>(rows + j * stride, h * stride, (ny - j + h - 1) / h, twiddles, z + j * step,
-                                h * step);
+    join_real_step<V, R, false, past_caches>(rows + j * stride, h * stride, (ny - j + h - 1) / h, twiddles,
+                                             z + j * step, part);
   }
 }
 
@@ -154,10 +157,14 @@ void convolve_real(const TransformTree<Real>& tree, std::int64_t ny, Real* rows,
   }
   with_radix(tree.radix[0], [&](auto radix) {
     constexpr std::int64_t R = radix;
+    constexpr std::int64_t gap = 2 * lanes;  // equal places of long parts would all fall into the same cache set
     const std::int64_t h = tree.length / R;
-    split_real<Arch, R>(rows, 2 * lanes, ny, h, tree.twiddles[0], scratch);
-    convolve_nodes<Arch, turn>(tree, 1, 0, R, h, scratch, spectrum, prefetch);
-    join_real<Arch, R>(rows, 2 * lanes, ny, h, tree.twiddles[0], scratch);
+    split_real<Arch, R>(rows, 2 * lanes, ny, h, tree.twiddles[0], scratch, gap);
+    for (std::int64_t t = 0; t < R; ++t) {
+      convolve_nodes<Arch, turn>(tree, 1, t, 1, h, scratch + t * (2 * lanes * h + gap), spectrum + t * h * lanes,
+                                 prefetch);
+    }
+    join_real<Arch, R>(rows, 2 * lanes, ny, h, tree.twiddles[0], scratch, gap);
   });
 }
 

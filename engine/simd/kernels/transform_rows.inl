@@ -15,33 +15,21 @@ template <std::size_t R, class V, class Real>
 [[gnu::always_inline]] inline void stream_parts(const Complex<V> (&x)[R], Real* z, std::int64_t stride) {
   unrolled<R>([&](auto s) __attribute__((always_inline)) {
     Real* part = z + static_cast<std::int64_t>(s) * stride;
-#if defined(__AVX512F__)
-    _mm512_stream_si512(reinterpret_cast<__m512i*>(part), __m512i(typename V::register_type(x[s].re)));
-    _mm512_stream_si512(reinterpret_cast<__m512i*>(part + V::size), __m512i(typename V::register_type(x[s].im)));
-#elif defined(__AVX2__)
-    _mm256_stream_si256(reinterpret_cast<__m256i*>(part), __m256i(typename V::register_type(x[s].re)));
-    _mm256_stream_si256(reinterpret_cast<__m256i*>(part + V::size), __m256i(typename V::register_type(x[s].im)));
-#else
-    store(part, x[s]);
-#endif
+    put<true>(x[s].re, part);
+    put<true>(x[s].im, part + V::size);
   });
 }
 
-/// Makes what was streamed visible to other threads.
-inline void finish_streams() {
-#if defined(__AVX2__)
-  _mm_sfence();
-#endif
-}
-
-/// The last stage, of radix `lanes`: z -> row j of every block. `field` points to the row in block 0.
+/// The last stage, of radix `lanes`: z -> row j of every block. `field` points to the row in block 0. Meanwhile a row
+/// to come is fetched: the first stage reads it in several places at once, which the hardware does not foresee.
 template <class Arch, class Real>
-void lanes_forward(const RowTransform<Real>& transform, const Real* z, Real* field) {
+void lanes_forward(const RowTransform<Real>& transform, const Real* z, Real* field, Prefetch coming) {
   using V = Batch<Arch, Real>;
   constexpr std::int64_t lanes = kLanes<Arch, Real>;
   const Real* twiddles = transform.lane_twiddles;
   const std::int64_t groups = transform.positions / lanes;
   for (std::int64_t group = 0; group < groups; ++group) {
+    coming.share(lanes);
     Complex<V> x[lanes];
     load_parts(x, z, 2 * lanes);
     transpose<1>(x);
@@ -141,16 +129,16 @@ void tree_of_reals_forward(const TransformTree<Real>& tree, const Real* row, Rea
     for (std::int64_t t = 0; t < R; ++t) tree_forward<Arch>(tree, 1, t, h, z + t * h * 2 * lanes);
   });
 }
-template <class Arch, class Real>
+template <class Arch, bool past_caches, class Real>
 void tree_of_reals_backward(const TransformTree<Real>& tree, Real* z, Real* row) {
   using V = Batch<Arch, Real>;
   constexpr std::int64_t lanes = kLanes<Arch, Real>;
-  if (tree.stages == 0) return V::load_aligned(z).store_unaligned(row);
+  if (tree.stages == 0) return put<past_caches>(V::load_aligned(z), row);
   with_radix(tree.radix[0], [&](auto radix) {
     constexpr std::int64_t R = radix;
     const std::int64_t h = tree.length / R;
     for (std::int64_t t = 0; t < R; ++t) tree_backward<Arch>(tree, 1, t, h, z + t * h * 2 * lanes);
-    join_real<Arch, R>(row, lanes, tree.length, h, tree.twiddles[0], z);
+    join_real<Arch, R, past_caches>(row, lanes, tree.length, h, tree.twiddles[0], z);
   });
 }
 
@@ -181,28 +169,48 @@ void pieces_forward(const RowTransform<Real>& transform, const Real* row, Real* 
   }
   tree_forward<Arch>(last, 0, 0, last.length, z);
 }
-/// The reverse: from the last piece to the first, each doubling the length of what is put together in `row`.
-template <class Arch, class Real>
-void pieces_backward(const RowTransform<Real>& transform, Real* z, Real* row) {
+/// The quarters a b c d from (a − c) − i (b − d) in z and a + c, b + d in `sums`, all twice as large there.
+template <class V, bool past_caches, class Real>
+[[gnu::always_inline]] inline void put_quarters(const Real* z, std::int64_t quarter, const Real* sums, Real* row) {
+  for (std::int64_t i = 0; i < quarter; i += static_cast<std::int64_t>(V::size)) {
+    const Complex<V> difference = load<V>(z + 2 * i);
+    const V first = V::load_unaligned(sums + i), second = V::load_unaligned(sums + quarter + i);
+    put<past_caches>(first + difference.re, row + i);
+    put<past_caches>(second - difference.im, row + quarter + i);
+    put<past_caches>(first - difference.re, row + 2 * quarter + i);
+    put<past_caches>(second + difference.im, row + 3 * quarter + i);
+  }
+}
+/// The reverse: from the last piece to the first, each doubling the length of what is put together, in `sums` until
+/// the first piece makes the row of it.
+template <class Arch, bool past_caches, class Real>
+void pieces_backward(const RowTransform<Real>& transform, Real* z, Real* row, Real* sums) {
   using V = Batch<Arch, Real>;
   constexpr std::int64_t lanes = kLanes<Arch, Real>;
   const TransformTree<Real>& last = transform.tree[transform.pieces - 1];
   z += (transform.positions - last.length) * 2 * lanes;
   tree_backward<Arch>(last, 0, 0, last.length, z);
-  for (std::int64_t p = 0; p < last.length; ++p) V::load_aligned(z + p * 2 * lanes).store_unaligned(row + p * lanes);
+  Real* const start = transform.pieces == 1 ? row : sums;
+  for (std::int64_t p = 0; p < last.length; ++p)
+    V::load_aligned(z + p * 2 * lanes).store_unaligned(start + p * lanes);
   for (std::int32_t piece = transform.pieces - 2; piece >= 0; --piece) {
     const std::int64_t quarter = transform.tree[piece].length * lanes;
     z -= 2 * quarter;
     tree_backward<Arch>(transform.tree[piece], 0, 0, transform.tree[piece].length, z);
-    for (std::int64_t i = 0; i < quarter; i += lanes) {
-      const Complex<V> difference = load<V>(z + 2 * i);
-      const V first = V::load_unaligned(row + i), second = V::load_unaligned(row + quarter + i);
-      (first + difference.re).store_unaligned(row + i);
-      (second - difference.im).store_unaligned(row + quarter + i);
-      (first - difference.re).store_unaligned(row + 2 * quarter + i);
-      (second + difference.im).store_unaligned(row + 3 * quarter + i);
+    if (piece > 0) {
+      put_quarters<V, false>(z, quarter, sums, sums);
+    } else {
+      put_quarters<V, past_caches>(z, quarter, sums, row);
     }
   }
+}
+
+/// The row two after row j, if any: fetching what is not there does no harm.
+template <class Real>
+Prefetch row_to_come(const RowTransform<Real>& transform, const Real* source, std::int64_t j) {
+  const std::int64_t bytes = transform.nx * static_cast<std::int64_t>(sizeof(Real));
+  const auto address = reinterpret_cast<std::uintptr_t>(source) + static_cast<std::uintptr_t>((j + 2) * bytes);
+  return {reinterpret_cast<const char*>(address), bytes / transform.positions};
 }
 
 template <class Arch, class Real>
@@ -226,28 +234,44 @@ void rows_forward(const RowTransform<Real>& transform, std::int64_t begin, std::
     } else {
       pieces_forward<Arch>(transform, row, z, padded);
     }
-    lanes_forward<Arch>(transform, z, field + j * 2 * lanes);
+    lanes_forward<Arch>(transform, z, field + j * 2 * lanes, row_to_come(transform, source, j));
   }
   if (transform.past_caches) finish_streams();
+}
+
+template <class Arch, bool past_caches, class Real>
+void row_backward(const RowTransform<Real>& transform, Real* z, Real* row, Real* scratch) {
+  if (transform.pieces == 0) {
+    tree_of_reals_backward<Arch, past_caches>(transform.tree[0], z, row);
+  } else {
+    pieces_backward<Arch, past_caches>(transform, z, row, scratch);
+  }
 }
 
 template <class Arch, class Real>
 void rows_backward(const RowTransform<Real>& transform, std::int64_t begin, std::int64_t end, const Real* field,
                    Real* result, Real* scratch) {
+  using V = Batch<Arch, Real>;
   constexpr std::int64_t lanes = kLanes<Arch, Real>;
   Real* z = scratch;
   Real* padded = scratch + 2 * lanes * transform.positions;
+  // Only whole cache lines go past the caches.
+  const bool whole_lines = sizeof(V) == 64 && transform.nx == transform.length &&
+                           reinterpret_cast<std::uintptr_t>(result) % sizeof(V) == 0;
+  const bool past_caches = transform.past_caches && whole_lines;
   for (std::int64_t j = begin; j < end; ++j) {
     lanes_backward<Arch>(transform, field + j * 2 * lanes, z);
     Real* row = result + j * transform.nx;
-    Real* target = transform.nx < transform.length ? padded : row;
-    if (transform.pieces == 0) {
-      tree_of_reals_backward<Arch>(transform.tree[0], z, target);
+    if (past_caches) {
+      row_backward<Arch, true>(transform, z, row, padded);
+    } else if (transform.nx == transform.length) {
+      row_backward<Arch, false>(transform, z, row, padded);
     } else {
-      pieces_backward<Arch>(transform, z, target);
+      row_backward<Arch, false>(transform, z, padded, padded);
+      std::memcpy(row, padded, sizeof(Real) * static_cast<std::size_t>(transform.nx));
     }
-    if (target != row) std::memcpy(row, target, sizeof(Real) * static_cast<std::size_t>(transform.nx));
   }
+  if (past_caches) finish_streams();
 }
 
 }  // namespace

@@ -37,6 +37,28 @@ template <class V, class Real>
   value.im.store_aligned(z + V::size);
 }
 
+/// Stores a register; `past_caches`: around the caches, to a place aligned to it.
+template <bool past_caches, class V, class Real>
+[[gnu::always_inline]] inline void put(const V& value, Real* place) {
+  if constexpr (past_caches) {
+#if defined(__AVX512F__)
+    _mm512_stream_si512(reinterpret_cast<__m512i*>(place), __m512i(typename V::register_type(value)));
+#elif defined(__AVX2__)
+    _mm256_stream_si256(reinterpret_cast<__m256i*>(place), __m256i(typename V::register_type(value)));
+#else
+    value.store_aligned(place);
+#endif
+  } else {
+    value.store_unaligned(place);
+  }
+}
+/// Makes what went past the caches visible to other threads.
+inline void finish_streams() {
+#if defined(__AVX2__)
+  _mm_sfence();
+#endif
+}
+
 /// x_s := c^s x_s, and the transform of the node.
 template <std::size_t R, class V, class Real>
 [[gnu::always_inline]] inline void split(Complex<V> (&x)[R], const Real* twiddles) {
