@@ -139,11 +139,13 @@ double solver_passes(scene::Engine& engine) {
   }
   contact::Passes<double> passes(engine.arena(), engine.kernels(), contact::PlacedGrid::centred({n, n, 1, 1}));
   const contact::LinearTrend approach{0.5, 0, 0};
+  passes.open_contact();
   return time_of(engine, 2, [&] {
-    passes.residual(approach, 0, 1e-30, p.data(), g.data(), z.data());
-    passes.correlate(p.data(), z.data(), v.data(), q.data());
-    passes.redirect(0.5, {}, {}, approach, p.data(), g.data(), z.data(), v.data());
-    passes.dot(v.data(), q.data());
+    passes.residual(approach, 0, 1, p.data(), g.data(), z.data());
+    passes.correlate(z.data(), v.data(), q.data());
+    passes.redirect(0.5, {}, 1, {}, p.data(), z.data(), v.data());
+    passes.balance({}, approach, p.data(), g.data(), v.data());
+    passes.curvature(p.data(), v.data(), q.data());
     passes.advance(1e-12, p.data(), v.data(), g.data(), q.data());
   });
 }
