@@ -49,7 +49,8 @@ struct Spectrum {
   Parity parity_y = Parity::even;
 };
 
-/// Scratch of one convolution at a time; reused by every following one.
+/// Scratch of one convolution at a time; reused by every following one. Nothing in it lasts from one to the next:
+/// between them its memory is free for other use.
 template <class Real>
 struct Workspace {
   Buffer<Real> field;            // the transformed rows; layout: private to the Convolution

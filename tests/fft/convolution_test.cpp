@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -317,6 +318,38 @@ TYPED_TEST(Precision, same_bits_for_any_number_of_threads_and_in_place) {
       with.convolution.apply(spectrum, in_place.data(), in_place.data(), *with.workspace);
       EXPECT_EQ(std::memcmp(in_place.data(), first.data(), result.size() * sizeof(Real)), 0) << threads;
     }
+  }
+}
+
+/// Large results at whole cache lines are written past the caches, and a workspace's contents are nobody's.
+TYPED_TEST(Precision, same_bits_wherever_the_result_lies_and_whatever_the_workspace_holds) {
+  using Real = TypeParam;
+  const auto symbol = [](std::int64_t kx, std::int64_t ky) { return 1.0 / static_cast<double>(1 + kx + 2 * ky); };
+  const auto check = [&](std::int64_t n, Boundary boundary, Method method, simd::Isa isa) {
+    Case<Real> with(n, n, boundary, method, 2, isa);
+    const auto source = random_values<Real>(n * n, 1);
+    const auto kernel = random_values<double>(n * n, 2);
+    const auto spectrum = boundary == Boundary::free
+                              ? with.convolution.spectrum(kernel.data(), Parity::even, Parity::odd)
+                              : with.convolution.spectrum_of_symbol(symbol);
+    const auto expected = with.apply(spectrum, source);
+    for (const std::size_t shift : {0, 1}) {
+      std::fill(with.workspace->field.begin(), with.workspace->field.end(), std::numeric_limits<Real>::quiet_NaN());
+      std::fill(with.workspace->scratch.begin(), with.workspace->scratch.end(),
+                std::numeric_limits<Real>::quiet_NaN());
+      Buffer<Real> result(source.size() + 64);
+      with.convolution.apply(spectrum, source.data(), result.data() + shift, *with.workspace);
+      EXPECT_EQ(std::memcmp(result.data() + shift, expected.data(), expected.size() * sizeof(Real)), 0)
+          << n << " " << simd::name(isa) << " shift " << shift;
+      for (std::size_t i = shift + source.size(); i < result.size(); ++i) EXPECT_EQ(result[i], Real{0});
+    }
+  };
+  for (const Boundary boundary : {Boundary::free, Boundary::periodic}) {
+    for (const simd::Isa isa : simd::supported()) {
+      check(32, boundary, Method::lanes, isa);
+      check(boundary == Boundary::free ? 512 : 1024, boundary, Method::lanes, isa);  // a field of 2 MB and more
+    }
+    check(33, boundary, Method::fftw, simd::Isa::baseline);
   }
 }
 
