@@ -128,6 +128,9 @@ class PlasticBody {
                            std::size_t spectra_limit);
 
  private:
+  static constexpr std::size_t kBlock = Anderson::kBlock;
+  static constexpr std::size_t kAll = 6;  // components
+
   TensorView view(const Buffer<double>& field) const;
   TensorArrays arrays(Buffer<double>& field) const;
   void move_to(const Region& region);
