@@ -66,7 +66,7 @@ void PlasticBody::list_blocks() {
   }
 }
 
-/// strain = before + d, p = p_before + √(2/3 d:d), where there is an increment.
+/// strain = before + d, where there is an increment; and, until evaluate() knows of an early part, p.
 void PlasticBody::combine() {
   const std::size_t count = blocks_.size() / kAll;
   if (count == 0) return;
@@ -168,13 +168,20 @@ YieldError PlasticBody::evaluate(const double* pressure, double unit) {
   TrialState state;
   state.count = box.cuboids();
   state.trial = view(trial_);
-  state.plastic_strain = p_old_.data();
+  state.plastic_strain = p_early_.data();
   if (!layer_factor_.empty()) state.layer_factor = {layer_factor_.data(), static_cast<std::size_t>(box.nz)};
   MappedState result;
   result.increment = arrays(mapped_);
   result.plastic_strain = p_mapped_.data();
   result.moved = moved_.data();
+  for (std::size_t block = 0; block < active_.size(); ++block) {
+    if (active_[block] != 0) moved_[block] = 1;
+  }
   map_to_yield(backend_.arena, backend_.kernels, law_, shear_modulus_, state, result);
+  for (const std::int64_t block : blocks_) {
+    const std::size_t first = static_cast<std::size_t>(block) * kBlock;
+    for (std::size_t n = first; n < first + kBlock; ++n) mapped_[n] += early_[n];
+  }
 
   bool more = false;
   for (std::size_t block = 0; block < active_.size(); ++block) {
@@ -220,6 +227,9 @@ double PlasticBody::try_stress() {
         tried[n] = total[n] + twice_mu * increment[n];
       }
       stress.component[c] = total + begin;
+    }
+    for (std::size_t first = begin; first < end; first += kBlock) {
+      if (active_[first / kBlock] != 0) part_flow(first, std::min(first + kBlock, end));
     }
     backend_.kernels.subsurface.von_mises(end - begin, stress, von_mises_.data() + begin);
     backend_.kernels.return_mapping.yield_stress(end - begin, law_.curve(), p_.data() + begin,
@@ -270,19 +280,16 @@ void PlasticBody::confine() {
 }
 
 double PlasticBody::accept() {
-  double work = 0;
+  const double work = plastic_work();
   for (const std::int64_t block : blocks_) {
-    const std::size_t first = static_cast<std::size_t>(block) * kBlock, c = first / stride_;
-    for (std::size_t n = first; n < first + kBlock; ++n) {
-      work += (c < 3 ? 1 : 2) * total_[n] * d_[n];
-      old_[n] = strain_[n];
-    }
+    const std::size_t first = static_cast<std::size_t>(block) * kBlock;
+    std::copy_n(strain_.begin() + first, kBlock, old_.begin() + first);
   }
-  std::copy(p_.begin(), p_.end(), p_old_.begin());
-  std::copy(p_.begin(), p_.end(), p_mapped_.begin());
+  std::copy(total_.begin(), total_.end(), stress_old_.begin());
+  for (Buffer<double>* before : {&p_old_, &p_mapped_, &p_early_}) std::copy(p_.begin(), p_.end(), before->begin());
   std::fill(moved_.begin(), moved_.end(), std::uint8_t{1});
   accepted_ = true;
-  return work * region_.box.dx * region_.box.dy * region_.box.dz;
+  return work;
 }
 
 LargestPlasticStrain PlasticBody::largest() const {
@@ -306,7 +313,7 @@ LargestPlasticStrain PlasticBody::largest() const {
 }
 
 PlasticBody::State PlasticBody::state() const {
-  return {region_, copy_of(old_), copy_of(d_), copy_of(p_old_)};
+  return {region_, copy_of(old_), copy_of(d_), copy_of(stress_old_), copy_of(p_old_)};
 }
 
 void PlasticBody::restore(const State& state) {
@@ -319,6 +326,7 @@ void PlasticBody::restore(const State& state) {
   }
   old_ = copy_of(state.strain);
   d_ = copy_of(state.increment);
+  stress_old_ = copy_of(state.stress);
   p_old_ = copy_of(state.equivalent);
   const bool same = region_ == state.region;
   std::unique_ptr<EigenstrainResponse> response = std::move(response_);
@@ -342,7 +350,7 @@ std::size_t PlasticBody::bytes(const fft::Backend& backend, const Grid& grid, co
   const EigenstrainResponse::Bytes response = EigenstrainResponse::bytes(backend, box);
   const EigenstrainResponse::Bytes surface =
       EigenstrainDisplacement::bytes(backend, grid, layers.count, layers.thickness);
-  constexpr std::size_t kFields = 2 * 7 * kAll + 6;  // while the box grows, some twice; and the state to go back to
+  constexpr std::size_t kFields = 2 * 9 * kAll + 7;  // while the box grows, some twice; and the state to go back to
   return stress.kept_bytes + stress.work_bytes + response.spectra + response.work + surface.spectra + surface.work +
          std::max(response.generation, surface.generation) + kFields * Buffer<double>::padded_bytes(box.cuboids()) +
          2 * Buffer<double>::padded_bytes(grid.nodes());

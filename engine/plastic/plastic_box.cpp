@@ -141,13 +141,15 @@ void PlasticBody::move_to(const Region& next) {
   };
   old_ = moved_field(old_, kAll);
   d_ = moved_field(d_, kAll);
+  stress_old_ = moved_field(stress_old_, kAll);
   p_old_ = moved_field(p_old_, 1);
-  for (Buffer<double>* field : {&strain_, &mapped_, &residual_, &total_, &trial_})
+  for (Buffer<double>* field : {&strain_, &mapped_, &residual_, &total_, &trial_, &early_})
     *field = Buffer<double>(kAll * stride_);
-  for (Buffer<double>* field : {&p_, &p_mapped_, &von_mises_, &yield_}) *field = Buffer<double>(stride_);
+  for (Buffer<double>* field : {&p_, &p_mapped_, &p_early_, &von_mises_, &yield_}) *field = Buffer<double>(stride_);
   std::copy(old_.begin(), old_.end(), strain_.begin());
   std::copy(p_old_.begin(), p_old_.end(), p_.begin());
   std::copy(p_old_.begin(), p_old_.end(), p_mapped_.begin());
+  std::copy(p_old_.begin(), p_old_.end(), p_early_.begin());
   pressure_ = Buffer<double>(static_cast<std::size_t>(box.nx * box.ny));
   if (!layer_factor_.empty()) {
     factor_ = Buffer<double>(stride_);
