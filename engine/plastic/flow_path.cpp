@@ -69,11 +69,11 @@ double flow_error(const FlowEnds& ends) {
     turned[c] = ends.early[c] - early / late * ends.late[c];
     change[c] = ends.after[c] - ends.before[c];
   }
-  const double to_stress = 3 * ends.shear_modulus / ends.yield_stress;
+  const double to_stress = 3 * ends.shear_modulus / ends.yield_after;
   const double flow = to_stress * (early + late);
-  const double elastic = std::max(0.0, 1 - von_mises(deviator(ends.before)) / ends.yield_stress);
+  const double elastic = std::max(0.0, 1 - von_mises(deviator(ends.before)) / ends.yield_before);
   const double share = elastic / (elastic + flow);
-  const double bent = 0.5 * flow * share * (1 - share) * von_mises(deviator(change)) / ends.yield_stress;
+  const double bent = 0.5 * flow * share * (1 - share) * von_mises(deviator(change)) / ends.yield_after;
   return std::max(to_stress * equivalent_strain(turned), bent);
 }
 

@@ -40,10 +40,10 @@ double equivalent_strain(const PointTensor& strain);
 
 /// One point at the end of an increment with flow.
 struct FlowEnds {
-  PointTensor before{}, after{};  // stress [Pa]
-  PointTensor early{}, late{};    // of the increment; late is not zero
-  double yield_stress = 0;        // after [Pa]
-  double shear_modulus = 0;       // [Pa]
+  PointTensor before{}, after{};             // stress [Pa]
+  PointTensor early{}, late{};               // of the increment; late is not zero
+  double yield_before = 0, yield_after = 0;  // [Pa]
+  double shear_modulus = 0;                  // [Pa]
 };
 
 /// Estimate of what the increment is wrong by, as stress relative to the yield stress: the larger of

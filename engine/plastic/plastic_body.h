@@ -148,6 +148,7 @@ class PlasticBody {
   void combine();
   double try_stress();
   void part_flow(std::size_t begin, std::size_t end);
+  void yield_stresses_of_block(std::size_t first, const double* equivalent, double* result) const;
   double plastic_work() const;
   double distance_of_flow() const;
   void list_blocks();
