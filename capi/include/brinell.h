@@ -501,9 +501,9 @@ typedef struct brn_increment {
   double upper_max_equivalent_plastic_strain;
   double upper_max_equivalent_plastic_strain_at[3];
   int64_t upper_plastic_nodes;
-  double increment_error; /* estimate of what the size of the increment, the worst of its parts, is wrong by: the stress
-                             that the error of the plastic strain makes, relative to the yield stress, as root mean
-                             square over the cuboids that have flowed. In proportion to the square of the size */
+  double increment_error; /* estimate of what the size of the increment, the worst of its parts, is wrong by: the
+                             stress that the error of the plastic strain makes, relative to the yield stress, as root
+                             mean square over the cuboids that have flowed. In proportion to the square of the size */
 } brn_increment;
 
 static inline void brn_increment_init(brn_increment *value) {
