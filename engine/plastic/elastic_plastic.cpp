@@ -242,7 +242,7 @@ PlasticSolution ElasticPlastic::advance(const contact::Load& load, contact::Obse
       approach_ = one.contact.approach;
       if (settings_.increment_tolerance > 0) {
         const double next = (1 - done) * part_within_tolerance(load.target - step.target, force);
-        part = std::min(next, std::ldexp(1.0, -halvings));
+        part = std::clamp(next, kLeastPart, std::ldexp(1.0, -halvings));
       }
     }
     for_bodies([&](PlasticBody& body) {
