@@ -103,6 +103,7 @@ class Builder {
     solver.tolerance = file_.solver.tolerance;
     solver.max_iterations = file_.solver.max_iterations;
     solver.precision = file_.solver.mixed ? BRN_PRECISION_MIXED : BRN_PRECISION_DOUBLE;
+    solver.increment_tolerance = file_.solver.increment_tolerance;
     accept(brn_scene_set_solver(scene_.get(), &solver), file_.solver.line, "[solver]");
     return {std::move(scene_), grid};
   }

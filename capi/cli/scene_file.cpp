@@ -225,6 +225,10 @@ SolverPart read_solver(TomlTable& table) {
   solver.max_iterations =
       static_cast<std::int32_t>(table.integer("max_iterations", 1, kMostInt32).value_or(solver.max_iterations));
   solver.mixed = table.choice("precision", {"double", "mixed"}).value_or("double") == "mixed";
+  if (const auto allowed = table.number("increment_tolerance", Allowed::positive)) {
+    if (!(*allowed >= 1e-6 && *allowed <= 1)) table.fail_key("increment_tolerance", "expected 1e-6 to 1");
+    solver.increment_tolerance = *allowed;
+  }
   solver.threads = static_cast<std::int32_t>(table.integer("threads", 0, 1024).value_or(0));
   table.finish();
   return solver;

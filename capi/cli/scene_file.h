@@ -70,6 +70,7 @@ struct SolverPart {
   double tolerance = 1e-8;
   std::int32_t max_iterations = 2000;
   bool mixed = false;
+  double increment_tolerance = 0;  // none
   std::int32_t threads = 0;
 };
 

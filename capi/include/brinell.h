@@ -383,6 +383,9 @@ typedef struct brn_solver {
   double tolerance;       /* on the certificate, 1e-14 ... 0.1; default 1e-8 */
   int32_t max_iterations; /* per increment; default 2000 */
   int32_t precision;      /* BRN_PRECISION_... */
+  /* Where a body hardens: an increment is divided until the estimate brn_increment.increment_error of each part is no
+     larger, into 256 parts at most; 1e-6 ... 1, or 0: increments are as the step says. Default 0. */
+  double increment_tolerance;
 } brn_solver;
 
 static inline void brn_solver_init(brn_solver *value) {
@@ -390,6 +393,7 @@ static inline void brn_solver_init(brn_solver *value) {
   value->tolerance = 1e-8;
   value->max_iterations = 2000;
   value->precision = 0;
+  value->increment_tolerance = 0.0;
 }
 BRN_API brn_status brn_scene_set_solver(brn_scene *scene, const brn_solver *solver);
 
@@ -517,7 +521,8 @@ typedef struct brn_increment {
   /* Of bodies that harden; NaN and 0 for others: */
   double yield; /* entry of the certificate: worst violation of the yield condition by the total stress, in cuboids
                    that flow its distance from it, relative to the yield stress */
-  int32_t substeps; /* parts in which the increment was solved: 1 unless it did not converge as a whole */
+  int32_t substeps; /* parts in which the increment was solved: 1 unless it did not converge as a whole, or
+                       brn_solver.increment_tolerance asks for more */
   int32_t reserved3;
   double max_equivalent_plastic_strain;
   double max_equivalent_plastic_strain_at[3]; /* centre of its cuboid, in the body's own frame [m] */
@@ -526,6 +531,9 @@ typedef struct brn_increment {
   double upper_max_equivalent_plastic_strain_at[3];
   int64_t upper_plastic_nodes;
   double offset[2]; /* where the upper body stands, from where it began: the steps' offsets so far, summed [m] */
+  double increment_error; /* estimate of what the size of the increment, the worst of its parts, is wrong by: the
+                             stress that the error of the plastic strain makes, relative to the yield stress, as root
+                             mean square over the cuboids that have flowed. In proportion to the square of the size */
 } brn_increment;
 
 static inline void brn_increment_init(brn_increment *value) {
@@ -579,6 +587,7 @@ static inline void brn_increment_init(brn_increment *value) {
   value->upper_plastic_nodes = 0;
   value->offset[0] = 0.0;
   value->offset[1] = 0.0;
+  value->increment_error = 0.0;
 }
 BRN_API brn_status brn_run_get_increment(brn_run *run, int32_t index, brn_increment *out);
 

@@ -185,6 +185,7 @@ brn_status brn_run_get_increment(brn_run* run, int32_t index, brn_increment* out
     result.stress_missing = i.stress_missing ? 1 : 0;
     result.yield = i.yield;
     result.substeps = i.substeps;
+    result.increment_error = i.increment_error;
     result.max_equivalent_plastic_strain = i.plastic[BRN_LOWER].largest;
     std::copy_n(i.plastic[BRN_LOWER].at, 3, result.max_equivalent_plastic_strain_at);
     result.plastic_nodes = i.plastic[BRN_LOWER].cuboids;
@@ -207,7 +208,7 @@ brn_status brn_run_get_increment(brn_run* run, int32_t index, brn_increment* out
           &brn_increment::max_equivalent_plastic_strain, &brn_increment::max_equivalent_plastic_strain_at,
           &brn_increment::plastic_nodes, &brn_increment::upper_max_equivalent_plastic_strain,
           &brn_increment::upper_max_equivalent_plastic_strain_at, &brn_increment::upper_plastic_nodes,
-          &brn_increment::offset);
+          &brn_increment::offset, &brn_increment::increment_error);
   });
 }
 

@@ -196,9 +196,9 @@ brn_status brn_scene_add_step(brn_scene* scene, const brn_step* step) {
 brn_status brn_scene_set_solver(brn_scene* scene, const brn_solver* solver) {
   return guarded_use(scene, "scene", [&] {
     const auto s = read(solver, "solver", brn_solver_init, &brn_solver::tolerance, &brn_solver::max_iterations,
-                        &brn_solver::precision);
+                        &brn_solver::precision, &brn_solver::increment_tolerance);
     const int32_t precision = checked_enum<int32_t>(s.precision, BRN_PRECISION_MIXED, "precision");
-    scene->scene.set_solver({s.tolerance, s.max_iterations, precision == BRN_PRECISION_MIXED});
+    scene->scene.set_solver({s.tolerance, s.max_iterations, precision == BRN_PRECISION_MIXED, s.increment_tolerance});
   });
 }
 

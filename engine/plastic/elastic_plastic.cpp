@@ -27,6 +27,18 @@ constexpr double kFirstContact = 1e-5;
 // The increment of plastic strain is extrapolated with a load increment up to so many times larger.
 constexpr double kMostExtrapolation = 2;
 
+// An increment is divided for its error into no smaller parts than this, by no more than this at once. The next part
+// is made for a little less than what is allowed, and no more than so many times as large as the last.
+constexpr double kLeastPart = 1.0 / 256;
+constexpr double kMostDivision = 1.0 / 8;
+constexpr double kMargin = 0.9;
+constexpr double kMostGrowth = 2;
+
+/// Of the size of an increment whose error goes with its square.
+double factor_within(double tolerance, double error) {
+  return kMargin * std::sqrt(tolerance / error);
+}
+
 }  // namespace
 
 ElasticPlastic::ElasticPlastic(const contact::Resources& resources, const Grid& grid, const double* gap,
@@ -77,7 +89,12 @@ void ElasticPlastic::move_upper_body(std::int64_t nodes_x, std::int64_t nodes_y)
   for_bodies([](PlasticBody& body) { body.guess(0); });
   displace();
   solver_.restore({{}, 0, solver_.first_touch()});
-  total_ = last_change_ = 0;
+  for_bodies([&](PlasticBody& body) {  // nothing but the residual stress is left
+    if (body.region().empty()) return;
+    body.evaluate(solver_.pressure().data(), settings_.contact_modulus, {});
+    body.accept();
+  });
+  total_ = last_change_ = last_error_ = 0;
   approach_ = solver_.first_touch();
 }
 
@@ -86,7 +103,7 @@ void ElasticPlastic::residual_displacement(double* result) const {
 }
 
 ElasticPlastic::State ElasticPlastic::state() const {
-  State state{{}, solver_.state(), last_was_force_, last_change_, total_, approach_};
+  State state{{}, solver_.state(), last_was_force_, last_change_, last_error_, total_, approach_};
   for (std::size_t which = 0; which < bodies_.size(); ++which) {
     if (bodies_[which] != nullptr) state.bodies[which] = bodies_[which]->state();
   }
@@ -106,6 +123,7 @@ void ElasticPlastic::restore(const State& state) {
   solver_.restore(state.contact);
   last_was_force_ = state.last_was_force;
   last_change_ = state.last_change;
+  last_error_ = state.last_error;
   total_ = state.total;
   approach_ = state.approach;
 }
@@ -172,6 +190,27 @@ PlasticSolution ElasticPlastic::reach(const contact::Load& load, contact::Observ
   }
 }
 
+double ElasticPlastic::increment_error() const {
+  IncrementError error;
+  for (const std::unique_ptr<PlasticBody>& body : bodies_) {
+    if (body == nullptr || body->region().empty()) continue;
+    const IncrementError one = body->increment_error();
+    error.squares += one.squares;
+    error.cuboids += one.cuboids;
+  }
+  return error.squares > 0 ? std::sqrt(error.squares / static_cast<double>(error.cuboids)) : 0;
+}
+
+/// The part of a change of the load that the error of the last increment lets expect to be within the tolerance, so
+/// that a whole number of such parts makes the change.
+double ElasticPlastic::part_within_tolerance(double change, bool force) const {
+  const bool goes_on = force == last_was_force_ && change * last_change_ > 0 && last_error_ > 0;
+  if (!(settings_.increment_tolerance > 0) || !goes_on) return 1;
+  const double size =
+      std::fabs(last_change_) * std::min(kMostGrowth, factor_within(settings_.increment_tolerance, last_error_));
+  return std::max(kLeastPart, 1 / std::ceil(std::fabs(change) / size));
+}
+
 PlasticSolution ElasticPlastic::advance(const contact::Load& load, contact::Observer observer,
                                         const TractionRatio& shear) {
   const State before = state();
@@ -180,12 +219,12 @@ PlasticSolution ElasticPlastic::advance(const contact::Load& load, contact::Obse
   PlasticSolution solution;
   solution.substeps = 0;
   solution.converged = true;
-  double done = 0, part = 1;
+  double done = 0, part = part_within_tolerance(load.target - origin, force);  // of the increment
   int halvings = 0;
   try {
     while (done < 1) {
       contact::Load step = load;
-      const bool last = done + part >= 1;
+      const bool last = done + part >= 1 - 0.5 * kLeastPart;
       if (!last) step.target = origin + (load.target - origin) * (done + part);
       const State start = done > 0 ? state() : State{};
       const double change = step.target - (force ? total_ : approach_);
@@ -196,13 +235,21 @@ PlasticSolution ElasticPlastic::advance(const contact::Load& load, contact::Obse
       solution.iterations += one.iterations;
       solution.yield = one.yield;
       solution.plastic_seconds += one.plastic_seconds;
-      if (!one.converged && halvings < kHalvings) {
+      const double error = one.converged ? increment_error() : 0;
+      const bool too_large = settings_.increment_tolerance > 0 && error > settings_.increment_tolerance;
+      if ((!one.converged && halvings < kHalvings) || (too_large && part > kLeastPart)) {
         restore(done > 0 ? start : before);
-        part /= 2;
-        ++halvings;
+        if (one.converged) {
+          part *= std::clamp(factor_within(settings_.increment_tolerance, error), kMostDivision, 0.5);
+          part = std::max(part, kLeastPart);
+        } else {
+          part /= 2;
+          ++halvings;
+        }
         continue;
       }
       solution.converged = solution.converged && one.converged;
+      solution.increment_error = std::max(solution.increment_error, error);
       ++solution.substeps;
       done = last ? 1 : done + part;
       for_bodies([&](PlasticBody& body) {
@@ -210,8 +257,13 @@ PlasticSolution ElasticPlastic::advance(const contact::Load& load, contact::Obse
       });
       last_was_force_ = force;
       last_change_ = change;
+      last_error_ = error;
       total_ = one.contact.total;
       approach_ = one.contact.approach;
+      if (settings_.increment_tolerance > 0) {
+        const double next = (1 - done) * part_within_tolerance(load.target - step.target, force);
+        part = std::clamp(next, kLeastPart, std::ldexp(1.0, -halvings));
+      }
     }
     for_bodies([&](PlasticBody& body) {
       if (!body.flow_is_cut_off()) return;

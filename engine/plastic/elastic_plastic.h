@@ -1,17 +1,20 @@
 // Contact of bodies of which at least one hardens, increment by increment. In each the plastic strain follows the
-// load implicitly (backward Euler: first order in the size of the increment). With the increment d of the plastic
-// strain of all bodies as the unknown, one iteration is
+// load implicitly, to second order in the size of the increment (flow_path.h), by what is known at its two ends
+// alone: so it is the same whether force or approach is prescribed. With the increment d of the plastic strain of all
+// bodies as the unknown, one iteration is
 //
 //   residual displacement of (before + d)  ->  gap of the undeformed bodies
 //   contact on that gap, from the last pressure  ->  pressure
-//   total stress, radial return (plastic_body.h)  ->  mapped
+//   total stress, return to the yield surface (plastic_body.h)  ->  mapped
 //   d  <-  Anderson acceleration of d = mapped
 //
 // with no loop within: the contact is solved as exactly as the plastic strain deserves. (C. Jacq, D. Nelias, G.
 // Lormand & D. Girodin, 2002, and V. Boucly, D. Nelias, S. Liu, Q. J. Wang & L. M. Keer, 2005, nest loops and leave
 // the residual stress behind by one increment; the yield condition then holds to first order only.)
 //
-// An increment that does not converge is divided in two, again and again, and what is solved stays solved.
+// An increment that does not converge is divided in two, again and again, and what is solved stays solved. One whose
+// estimated error is larger than asked for is divided too: the estimate goes with the square of the increment, as the
+// error of all increments together does.
 #pragma once
 
 #include <array>
@@ -31,6 +34,7 @@ struct PairSettings {
   double tolerance = 1e-8;             // on the contact's certificate and on the yield condition
   std::int32_t max_iterations = 2000;  // of one contact
   std::size_t spectra_limit = 0;       // [bytes] of coefficients of the stress that each body may keep
+  double increment_tolerance = 0;      // on PlasticSolution::increment_error; 0: increments are not divided for it
 };
 
 /// What hardens: by body, 0 lower, 1 upper; nothing: it is elastic or rigid.
@@ -45,6 +49,7 @@ struct PlasticSolution {
   double yield = 0;             // worst violation of the yield condition, relative to the yield stress
   std::int32_t iterations = 0;  // of plastic strain
   std::int32_t substeps = 1;
+  double increment_error = 0;  // root mean square, over what has flowed, of flow_error(); of the worst substep
   double dissipation = 0;      // plastic work of the increment [J]
   double plastic_seconds = 0;  // spent on all but the contact
 };
@@ -83,6 +88,7 @@ class ElasticPlastic {
     contact::Solver::State contact;
     bool last_was_force = true;
     double last_change = 0;
+    double last_error = 0;
     double total = 0, approach = 0;
   };
   State state() const;
@@ -93,6 +99,8 @@ class ElasticPlastic {
   PlasticSolution reach(const contact::Load& load, contact::Observer observer, const TractionRatio& shear);
   void displace();
   contact::Box contact_box() const;
+  double increment_error() const;
+  double part_within_tolerance(double change, bool force) const;
   template <class Body>
   void for_bodies(const Body& body);
 
@@ -109,6 +117,7 @@ class ElasticPlastic {
   // Of the last solution:
   bool last_was_force_ = true;
   double last_change_ = 0;
+  double last_error_ = 0;
   double total_ = 0, approach_ = 0;
 };
 

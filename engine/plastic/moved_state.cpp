@@ -27,7 +27,7 @@ struct Kept {
 
 PlasticBody::State moved(const PlasticBody::State& state, std::int64_t nodes_x, std::int64_t nodes_y,
                          const Grid& grid) {
-  const auto& [region, strain, increment, equivalent] = state;  // all of it: another member does not compile here
+  const auto& [region, strain, increment, stress, equivalent] = state;  // all of it: another member does not compile here
   if (region.empty()) return {};
   const Box& box = region.box;
   const Kept x(region.i0, box.nx, nodes_x, grid.nx), y(region.j0, box.ny, nodes_y, grid.ny);
@@ -60,6 +60,7 @@ PlasticBody::State moved(const PlasticBody::State& state, std::int64_t nodes_x, 
   };
   result.strain = kept(strain);
   result.increment = kept(increment);
+  result.stress = kept(stress);
   result.equivalent = kept(equivalent);
   return result;
 }

@@ -1,10 +1,12 @@
 // One elastic-plastic body of a contact: plastic strain in the box of cuboids below it, and one pass of the fixed
 // point that an increment of load asks for. With the plastic strain before, plus the increment d,
 //
-//   total = sigma_el(pressure) + sigma_res(before + d),   trial = total + 2 mu d,   mapped = radial return of trial,
+//   total = sigma_el(pressure) + sigma_res(before + d),   trial = total + 2 mu (d − early(d)),
+//   mapped = early(d) + radial return of trial,
 //
-// d is the solution if mapped = d; the total stress then lies within the yield surface and, where there is flow, on
-// it. The equivalent plastic strain is p = p_before + √(2/3 d:d). z points into the body, whichever it is.
+// where early(d) is the part of the flow in the direction that it begins with (flow_path.h), d is the solution if
+// mapped = d; the total stress then lies within the yield surface and, where there is flow, on it. The equivalent
+// plastic strain is p = p_before + |early| + |d − early|. z points into the body, whichever it is.
 //
 // The box begins at the surface and lies below part of the grid. It holds every node that is in contact, so that the
 // stress under the contact needs no others, and grows as yielding or the contact comes near its sides; what it holds
@@ -65,6 +67,12 @@ using TractionRatio = std::array<double, 2>;
 /// The pressure, and the shears that are not zero.
 subsurface::Sources sources_of(const TractionRatio& shear);
 
+/// Estimated error of an increment: its root mean square over all that has flowed is √(squares/cuboids).
+struct IncrementError {
+  double squares = 0;        // of flow_error()
+  std::int64_t cuboids = 0;  // that have flowed, in this increment or before
+};
+
 struct LargestPlasticStrain {
   double value = 0;            // equivalent
   std::array<double, 3> at{};  // [m], z into the body; meaningless where the value is 0
@@ -109,7 +117,10 @@ class PlasticBody {
   /// After the acceleration: what does not flow has no increment.
   void confine();
 
-  /// d becomes history; what is returned is the plastic work that it dissipated [J].
+  /// flow_error() of the solved increment.
+  IncrementError increment_error() const;
+
+  /// d becomes history; what is returned is the plastic work that it dissipated [J], never negative.
   double accept();
 
   /// Plastic strain, equivalent plastic strain and the total stress of the last evaluation.
@@ -124,24 +135,30 @@ class PlasticBody {
   /// What survives between increments.
   struct State {
     Region region;
-    Buffer<double> strain, increment;  // 6·stride
-    Buffer<double> equivalent;         // stride
+    Buffer<double> strain, increment, stress;  // 6·stride
+    Buffer<double> equivalent;                 // stride
   };
   State state() const;
   void restore(const State& state);
-  static std::size_t state_bytes(std::size_t cuboids) { return (2 * 6 + 1) * Buffer<double>::padded_bytes(cuboids); }
+  static std::size_t state_bytes(std::size_t cuboids) { return (3 * 6 + 1) * Buffer<double>::padded_bytes(cuboids); }
 
   /// Bytes of one whose box takes all layers below so many nodes, under such tractions.
   static std::size_t bytes(const fft::Backend& backend, const Grid& grid, const Layers& layers,
                            std::size_t spectra_limit, subsurface::Sources sources);
 
  private:
+  static constexpr std::size_t kBlock = Anderson::kBlock;
+  static constexpr std::size_t kAll = 6;  // components
+
   TensorView view(const Buffer<double>& field) const;
   TensorArrays arrays(Buffer<double>& field) const;
   void move_to(const Region& region);
   void contact_stress(const double* pressure, double unit, const TractionRatio& shear);
   void combine();
   double try_stress();
+  void part_flow(std::size_t begin, std::size_t end);
+  void yield_stresses_of_block(std::size_t first, const double* equivalent, double* result) const;
+  double plastic_work() const;
   double distance_of_flow() const;
   void list_blocks();
   bool flows(std::size_t n) const { return p_mapped_[n] > p_old_[n] || p_[n] > p_old_[n]; }
@@ -160,7 +177,9 @@ class PlasticBody {
   std::unique_ptr<subsurface::StressField> stress_;  // of the box; null until needed
   std::unique_ptr<EigenstrainDisplacement> surface_;
   Buffer<double> old_, strain_, d_, mapped_, residual_, total_, trial_;  // six components each
+  Buffer<double> stress_old_, early_;                                    // six: total before; part of d, where active
   Buffer<double> p_old_, p_, p_mapped_, von_mises_, yield_;              // one value a cuboid
+  Buffer<double> p_early_;                                               // p_old + |early|
   Buffer<double> factor_;                                                // on the yield stress; empty: 1
   std::vector<double> layer_factor_;
   Buffer<double> pressure_, displacement_;  // below the box [Pa]; on the grid [m]

@@ -13,7 +13,7 @@ namespace brinell::scene {
 namespace {
 
 constexpr char kMagic[8] = {'B', 'R', 'N', 'R', 'U', 'N', '\0', '\0'};
-constexpr std::uint32_t kVersion = 5;  // of the layout below
+constexpr std::uint32_t kVersion = 6;  // of the layout below
 constexpr std::uint32_t kByteOrder = 0x01020304;
 
 [[noreturn]] void damaged(const std::string& why) {
@@ -85,6 +85,7 @@ void members(I& increment, const Visit& visit) {
   visit(increment.certificate.balance);
   visit(increment.yield);
   visit(increment.substeps);
+  visit(increment.increment_error);
   for (auto& body : increment.plastic) {
     visit(body.largest);
     for (auto& value : body.at) visit(value);
@@ -109,6 +110,7 @@ template <class S, class Visit>
 void plastic_members(S& state, const Visit& visit) {
   visit(state.last_was_force);
   visit(state.last_change);
+  visit(state.last_error);
   visit(state.total);
   visit(state.approach);
 }
@@ -128,7 +130,7 @@ void put_plastic(Writer& out, const plastic::ElasticPlastic::State& state) {
   for (const auto& body : state.bodies) {
     if (!body) continue;
     body_members(*body, put);
-    for (const Buffer<double>* field : {&body->strain, &body->increment, &body->equivalent}) {
+    for (const Buffer<double>* field : {&body->strain, &body->increment, &body->stress, &body->equivalent}) {
       put(static_cast<std::uint64_t>(field->size()));
       out.put_bytes(field->data(), field->size() * sizeof(double));
     }
@@ -156,7 +158,7 @@ plastic::ElasticPlastic::State get_plastic(Reader& in, const Scene& scene) {
     }
     const std::size_t stride = plastic::PlasticBody::stride_of(box);
     for (auto [field, size] : {std::pair{&body.strain, 6 * stride}, std::pair{&body.increment, 6 * stride},
-                               std::pair{&body.equivalent, stride}}) {
+                               std::pair{&body.stress, 6 * stride}, std::pair{&body.equivalent, stride}}) {
       std::uint64_t count = 0;
       in.get(count);
       if (count != size || count > in.left() / sizeof(double)) damaged("its plastic strain is not that of its box");

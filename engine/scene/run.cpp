@@ -77,7 +77,7 @@ void Run::prepare() {
     plastic_ = std::make_unique<plastic::ElasticPlastic>(
         engine_.resources(), grid, gap_.data(), present_gap_.data(), *solver_, pair,
         plastic::PairSettings{contact_modulus_, scene_.layers(), settings.tolerance, settings.max_iterations,
-                              plan_.plastic_spectra_limit});
+                              plan_.plastic_spectra_limit, settings.increment_tolerance});
     plastic_fields_ = std::make_unique<PlasticFields>(engine_, scene_, *plastic_);
   }
   if (increments_.empty()) {
@@ -138,6 +138,7 @@ contact::Solution Run::solve(const contact::Load& load, contact::Observer observ
   increment.converged = solution.converged;
   increment.yield = solution.yield;
   increment.substeps = solution.substeps;
+  increment.increment_error = solution.increment_error;
   for (const Which which : {Which::lower, Which::upper}) {
     if (!scene_.hardens(which)) continue;
     const auto largest = plastic_->body(scene_.identical() ? 0 : static_cast<int>(which))->largest();

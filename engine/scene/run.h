@@ -51,7 +51,8 @@ struct Increment {
   contact::Certificate certificate;
   double yield = std::numeric_limits<double>::quiet_NaN();  // worst violation of the yield condition / yield stress
   std::int32_t substeps = 1;                                // parts in which a body that hardens was loaded
-  PlasticExtreme plastic[2];                                // by Which
+  double increment_error = std::numeric_limits<double>::quiet_NaN();  // estimate: plastic::PlasticSolution
+  PlasticExtreme plastic[2];                                          // by Which
   double wall_seconds = 0;
 
   /// The worst entry of the certificate, the yield condition included.

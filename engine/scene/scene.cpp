@@ -17,6 +17,7 @@ namespace {
 
 constexpr double kLeastTolerance = 1e-14;
 constexpr double kLargestTolerance = 0.1;
+constexpr double kLeastIncrementTolerance = 1e-6, kLargestIncrementTolerance = 1;
 
 void require(bool holds, Status status, const std::string& message) {
   if (!holds) fail(status, message);
@@ -247,6 +248,11 @@ void Scene::set_solver(const SolverSettings& solver) {
               text(kLargestTolerance));
   require(solver.max_iterations >= 1, Status::invalid_argument,
           "max_iterations = " + std::to_string(solver.max_iterations) + ": must be at least 1");
+  require(solver.increment_tolerance == 0 || (solver.increment_tolerance >= kLeastIncrementTolerance &&
+                                              solver.increment_tolerance <= kLargestIncrementTolerance),
+          Status::invalid_argument,
+          "increment_tolerance = " + text(solver.increment_tolerance) + ": must be 0 or lie between " +
+              text(kLeastIncrementTolerance) + " and " + text(kLargestIncrementTolerance));
   solver_ = solver;
 }
 
@@ -367,6 +373,7 @@ std::uint64_t Scene::fingerprint() const {
   f.add(solver_.tolerance);
   f.add(solver_.max_iterations);
   f.add(solver_.mixed_precision);
+  if (hardens()) f.add(solver_.increment_tolerance);
   for (const double depth : subsurface_.depths) f.add(depth);
   for (const Field field : subsurface_.fields) f.add(static_cast<std::int32_t>(field));
   for (const Which which : {Which::lower, Which::upper}) {

@@ -59,6 +59,7 @@ struct SolverSettings {
   double tolerance = 1e-8;
   std::int32_t max_iterations = 2000;
   bool mixed_precision = false;
+  double increment_tolerance = 0;  // on Increment::increment_error; 0: as the step says. Read where a body hardens
 };
 
 /// What is wanted of the stress below the surfaces.

@@ -78,6 +78,8 @@ static void a_sphere_leaves_an_imprint(void) {
   for (step = 0; step < increments; ++step) {
     const brn_increment one = increment(run, step);
     CHECK(one.converged == 1 && one.yield <= tolerance && one.yield >= 0 && one.substeps == 1);
+    CHECK(one.increment_error >= 0 &&
+          (one.increment_error > 0) == (step < increments - 2)); /* unloading is elastic */
   }
   loaded = increment(run, increments - 3);
   apart = increment(run, increments - 1);
@@ -115,6 +117,31 @@ static void a_sphere_leaves_an_imprint(void) {
   free(strain);
   free(residual);
   free(stress);
+  brn_run_destroy(run);
+  brn_scene_destroy(scene);
+  brn_engine_destroy(engine);
+}
+
+static void increments_are_divided_where_that_is_asked_for(void) {
+  brn_engine *engine = plain_engine(2);
+  brn_scene *scene = plastic_scene(800e6);
+  brn_run *run = start(engine, scene);
+  brn_solver solver;
+  double as_is, allowed;
+  CHECK_STATUS(BRN_OK, brn_run_advance(run, NULL, NULL));
+  CHECK_STATUS(BRN_OK, brn_run_advance(run, NULL, NULL));
+  as_is = increment(run, 1).increment_error;
+  allowed = 0.2 * as_is;
+  brn_run_destroy(run);
+  brn_solver_init(&solver);
+  solver.tolerance = tolerance;
+  solver.increment_tolerance = allowed;
+  CHECK_STATUS(BRN_OK, brn_scene_set_solver(scene, &solver));
+  run = start(engine, scene);
+  CHECK_STATUS(BRN_OK, brn_run_advance(run, NULL, NULL));
+  CHECK_STATUS(BRN_OK, brn_run_advance(run, NULL, NULL));
+  CHECK(increment(run, 1).substeps > 1);
+  CHECK(increment(run, 1).increment_error > 0 && increment(run, 1).increment_error <= allowed);
   brn_run_destroy(run);
   brn_scene_destroy(scene);
   brn_engine_destroy(engine);
@@ -345,6 +372,7 @@ static void plastic_strain_in_the_last_layer_is_told(void) {
 
 int main(void) {
   a_sphere_leaves_an_imprint();
+  increments_are_divided_where_that_is_asked_for();
   below_yield_it_is_the_elastic_run();
   a_history_resumes_to_the_same_bits();
   sliding_bodies_yield();

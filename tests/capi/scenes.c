@@ -280,6 +280,7 @@ static void steps(void) {
 
 static void solvers(void) {
   static const double bad_tolerances[] = {0.0, -1e-8, 1e-15, 0.2, NAN, INFINITY};
+  static const double bad_increments[] = {-1e-3, 9e-7, 1.1, NAN};
   brn_scene *scene = empty_scene();
   brn_solver solver;
   size_t k;
@@ -291,6 +292,11 @@ static void solvers(void) {
   brn_solver_init(&solver);
   solver.max_iterations = 0;
   REFUSED(scene, brn_scene_set_solver(scene, &solver), "max_iterations|0");
+  for (k = 0; k < sizeof bad_increments / sizeof *bad_increments; ++k) {
+    brn_solver_init(&solver);
+    solver.increment_tolerance = bad_increments[k];
+    REFUSED(scene, brn_scene_set_solver(scene, &solver), "increment_tolerance|0|1e-06");
+  }
   brn_solver_init(&solver);
   solver.precision = 2;
   REFUSED(scene, brn_scene_set_solver(scene, &solver), "precision|2");

@@ -152,6 +152,7 @@ class CommandLine(unittest.TestCase):
             certificate = increment["certificate"]
             self.assertLessEqual({"penetration", "complementarity", "balance", "yield"}, set(certificate))
             self.assertIsNone(certificate["yield"])
+            self.assertIsNone(increment["increment_error"])
             for part in ("penetration", "complementarity", "balance"):
                 self.assertLessEqual(certificate[part], 1e-8)
 
@@ -551,6 +552,8 @@ fields = ["plastic_strain", "equivalent_plastic_strain", "residual_stress", "res
         for increment in summary["increments"]:
             self.assertLessEqual(increment["certificate"]["yield"], 1e-7)
             self.assertEqual(increment["substeps"], 1)
+        self.assertGreater(loaded["increment_error"], 0)
+        self.assertEqual(apart["increment_error"], 0)
         tree = xml.etree.ElementTree.parse(self.out / "fields.xdmf")
         sizes = {d.text.split(":")[1].rsplit("/", 1)[1]: d.get("Dimensions") for d in tree.iter("DataItem")
                  if d.get("Format") == "HDF"}

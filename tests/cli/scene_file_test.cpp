@@ -52,6 +52,7 @@ traction_ratio = [0.3, 0]
 tolerance = 1e-9
 max_iterations = 100
 precision = "mixed"
+increment_tolerance = 1e-3
 threads = 2
 [output]
 fields = ["pressure", "stress"]
@@ -100,6 +101,7 @@ TEST(SceneFile, reads_the_keys_of_the_contract) {
   EXPECT_EQ(scene.solver.tolerance, 1e-9);
   EXPECT_EQ(scene.solver.max_iterations, 100);
   EXPECT_TRUE(scene.solver.mixed);
+  EXPECT_EQ(scene.solver.increment_tolerance, 1e-3);
   EXPECT_EQ(scene.solver.threads, 2);
   EXPECT_THAT(scene.output.fields, ElementsAre("pressure", "stress"));
   EXPECT_EQ(scene.output.increments, StoredIncrements::all);
@@ -119,6 +121,7 @@ approach = 1e-6)");
   EXPECT_EQ(scene.steps[0].increments, 1);
   EXPECT_EQ(scene.solver.tolerance, 1e-8);
   EXPECT_EQ(scene.solver.max_iterations, 2000);
+  EXPECT_EQ(scene.solver.increment_tolerance, 0);
   EXPECT_EQ(scene.solver.threads, 0);
   EXPECT_EQ(scene.output.increments, StoredIncrements::last);
 }

@@ -18,6 +18,7 @@ PlasticBody::State strained() {
   const std::size_t stride = PlasticBody::stride_of(state.region.box);
   state.strain = Buffer<double>(6 * stride);
   state.increment = Buffer<double>(6 * stride);
+  state.stress = Buffer<double>(6 * stride);
   state.equivalent = Buffer<double>(stride);
   for (std::size_t k = 0; k < 3; ++k) {
     for (std::size_t j = 1; j < 3; ++j) {
@@ -27,6 +28,7 @@ PlasticBody::State strained() {
         for (std::size_t c = 0; c < 6; ++c) {
           state.strain[c * stride + n] = 1e3 * static_cast<double>(c) + static_cast<double>(n);
           state.increment[c * stride + n] = -state.strain[c * stride + n];
+          state.stress[c * stride + n] = 2 * state.strain[c * stride + n];
         }
       }
     }
@@ -62,6 +64,7 @@ TEST(MovedState, holds_the_same_strain_at_other_nodes) {
             ASSERT_EQ(value(after.strain, after, c, i, j, k), value(before.strain, before, c, i - by_x, j - by_y, k));
             ASSERT_EQ(value(after.increment, after, c, i, j, k),
                       value(before.increment, before, c, i - by_x, j - by_y, k));
+            ASSERT_EQ(value(after.stress, after, c, i, j, k), value(before.stress, before, c, i - by_x, j - by_y, k));
           }
         }
       }

@@ -78,6 +78,7 @@ Json increment_json(const brn_increment& increment) {
           {"upper_plastic_nodes",
            count_json(increment.upper_plastic_nodes, increment.upper_max_equivalent_plastic_strain)},
           {"substeps", increment.substeps},
+          {"increment_error", number_json(increment.increment_error)},
           {"iterations", increment.iterations},
           {"convolutions", increment.convolutions},
           {"certificate",
