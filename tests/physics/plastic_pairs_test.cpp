@@ -103,8 +103,8 @@ Extreme vertex(const std::vector<double>& values, std::size_t k, double thicknes
 }
 
 TwoSpheres press_two_spheres(bool both) {
-  // An eighth and a sixteenth of the contact radius, for the thin tensile layer; an odd number of nodes has one on the
-  // axis.
+  // An eighth and a sixteenth of the contact radius, for the thin tensile layer; an odd number of nodes has one on
+  // the axis.
   constexpr double side = 100e-6, thickness = 50e-6;
   const Grid grid{29, 29, side, side};
   const plastic::Layers layers{44, thickness};
@@ -134,7 +134,8 @@ TwoSpheres press_two_spheres(bool both) {
   result.compressive = vertex(mean, least, thickness);
   result.tensile_below = vertex(mean, place(std::max_element(middle, mean.end() - 1)), thickness);
   const std::size_t above = place(std::max_element(mean.begin(), middle));
-  result.tensile_above = {mean[above] / hertz_pressure(), (static_cast<double>(above) + 0.5) * thickness / hertz_radius()};
+  result.tensile_above = {mean[above] / hertz_pressure(),
+                          (static_cast<double>(above) + 0.5) * thickness / hertz_radius()};
   return result;
 }
 
