@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdio>
 
+#include "measure/clock.h"
 #include "measure/statistics.h"
 
 namespace brinell::bench {
@@ -27,33 +28,39 @@ void mark_front(std::vector<SweepPoint>& points) {
 }  // namespace
 
 std::vector<SweepPoint> measured(std::vector<Entry>& entries, int rounds, const std::vector<Quantity>& quantities) {
-  constexpr double kLongTime = 5;  // of a candidate: then its turns end
-  std::vector<std::vector<Result>> results(entries.size());
-  std::vector<std::vector<std::vector<double>>> times(entries.size());  // of entry and point, one for each turn
-  for (int round = 0; round <= rounds; ++round) {                       // the first fills caches
+  constexpr double kLongTurn = 1;  // which caches hardly shorten: the first counts
+  constexpr double kLongTime = 5;  // of all turns of a candidate: then they end
+  struct Turns {
+    std::vector<Result> results;             // of the first turn, one a point
+    std::vector<std::vector<double>> times;  // of each point
+    int counted = 0;
+    double spent = 0;
+  };
+  std::vector<Turns> all(entries.size());
+  for (int round = 0; round <= rounds; ++round) {
     for (std::size_t e = 0; e < entries.size(); ++e) {
-      double spent = 0;
-      for (const auto& of_point : times[e]) {
-        for (const double seconds : of_point) spent += seconds;
+      Turns& turns = all[e];
+      if (turns.counted == rounds || turns.spent > kLongTime) continue;
+      const double start = seconds(Clock::cpu);
+      std::vector<Result> results = entries[e].candidate->turn();
+      const double taken = seconds(Clock::cpu) - start;
+      turns.times.resize(results.size());
+      if (round > 0 || taken > kLongTurn) {
+        for (std::size_t k = 0; k < results.size(); ++k) turns.times[k].push_back(results[k].seconds);
+        ++turns.counted;
+        turns.spent += taken;
       }
-      if (round > 1 && spent > kLongTime) continue;
-      std::vector<Result> turn = entries[e].candidate->turn();
-      times[e].resize(turn.size());
-      if (round == 0) {
-        results[e] = std::move(turn);
-        continue;
-      }
-      for (std::size_t k = 0; k < turn.size(); ++k) times[e][k].push_back(turn[k].seconds);
+      if (round == 0) turns.results = std::move(results);
     }
   }
   std::vector<SweepPoint> points;
   for (const Quantity& quantity : quantities) {
     for (std::size_t e = 0; e < entries.size(); ++e) {
-      for (std::size_t k = 0; k < results[e].size(); ++k) {
-        const Result& result = results[e][k];
+      for (std::size_t k = 0; k < all[e].results.size(); ++k) {
+        const Result& result = all[e].results[k];
         SweepPoint point = entries[e].points[k];
         point.quantity = quantity.name;
-        point.seconds = median(times[e][k]);
+        point.seconds = median(all[e].times[k]);
         point.error = quantity.error(result);
         point.certificate = result.certificate;
         point.increments = result.increments;

@@ -27,10 +27,10 @@ sweep() { # PROFILE
     tilted_punch) draw "$1" --step 2 --grids 32,64,128,256,512 ;;
     crowned_roller | crowned_roller_gentle) draw "$1" --step 3 --grids 64,128,256,512 ;;
     # Of bodies that harden the loading alone: what follows is elastic.
-    nanoindentation) draw "$1" --step 0 --rounds 2 --grids 16,24,32,48,64 --reference-grid 96 ;;
-    two_spheres) draw "$1" --step 1 --rounds 1 --grids 16,24,32,48 --reference-grid 72 ;;
-    two_spheres/one_elastic)
-      draw "$1" --step 1 --rounds 1 --sweeps tolerance,increments --nodes 32 --increments 3,4,6,8,12,16,24
+    nanoindentation) draw "$1" --step 0 --rounds 1 --grids 16,24,32,48,64 --reference-grid 96 ;;
+    # Up to 2 kN: plastic strain reaches 0.2 % on the way.
+    two_spheres | two_spheres/one_elastic)
+      draw "$1" --step 1 --rounds 2 --grids 16,24,32,48,64 --reference-grid 96
       ;;
     # Cuboids of 2 um for the tolerance and the increments.
     rough_indent)

@@ -41,8 +41,8 @@ def graded(cell, fine, far):
 
 class Mesh:
     def __init__(self, cell, contact_radius):
-        x = graded(cell, 1.5 * contact_radius, 15 * contact_radius)
-        z = graded(cell, 2.2 * contact_radius, 15 * contact_radius)
+        x = graded(cell, 1.5 * contact_radius, 45 * contact_radius)
+        z = graded(cell, 2.2 * contact_radius, 45 * contact_radius)
         n, m = len(x), len(z)
         self.r, self.z = (a.ravel() for a in np.meshgrid(x, z))
         first = (np.arange(m - 1)[:, None] * n + np.arange(n - 1)).ravel()

@@ -228,6 +228,22 @@ TEST(Plasticity, the_work_of_a_cycle_is_dissipated_or_stored) {
             std::fabs(coarse.dissipation + coarse.stored - coarse.work));
 }
 
+TEST(Plasticity, the_imprint_converges_with_second_order) {
+  std::vector<double> imprint;
+  for (const int nodes : {12, 24, 48}) {
+    const double spacing = 12e-6 / nodes;
+    Press press(kSteel, nodes, spacing, 2 * nodes / 3, 1e-6);
+    for (const double force : {0.04, 0.08, 0.12}) ASSERT_TRUE(press.to(force).converged);
+    std::vector<double> displacement(press.grid.nodes());
+    press.loop.residual_displacement(displacement.data());
+    imprint.push_back(*std::max_element(displacement.begin(), displacement.end()));
+  }
+  // Each halving divides the difference by 4; an even number of nodes looks half a cell beside the axis, and the edge
+  // of the contact and of the flow move by whole cells.
+  const double order = std::log2((imprint[1] - imprint[0]) / (imprint[2] - imprint[1]));
+  EXPECT_NEAR(order, 2, 0.5);
+}
+
 // ------------------------------------------------------------------------------------------------- whole load
 // histories
 
