@@ -35,6 +35,7 @@ class OfEngine final : public Candidate {
     Result result;
     result.seconds = seconds(Clock::cpu) - start;
     if (status != BRN_NOT_CONVERGED) cli::check(status, run.get());
+    result.converged = status == BRN_OK;
     result.increments = brn_run_solved_increments(run.get());
     for (int n = 0; n < result.increments; ++n) {
       const brn_increment increment = cli::increment_of(run.get(), n);
@@ -140,6 +141,7 @@ class OfNestedNewton final : public Candidate {
       Result& result = results.emplace_back();
       result.seconds = seconds(Clock::cpu) - start;
       result.pressure = in_pascal(solver_.pressure(), modulus_);
+      result.converged = solution.converged;
       result.slope = solution.slope;
       result.certificate = solution.certificate.worst();
       result.iterations = solution.iterations;

@@ -12,6 +12,7 @@
 namespace brinell::bench {
 
 struct Result {
+  bool converged = true;
   double seconds = 0;
   std::vector<double> pressure;  // [Pa], after the last increment, as the next ones
   double approach = 0;           // [m]

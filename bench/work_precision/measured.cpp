@@ -58,6 +58,7 @@ std::vector<SweepPoint> measured(std::vector<Entry>& entries, int rounds, const 
     for (std::size_t e = 0; e < entries.size(); ++e) {
       for (std::size_t k = 0; k < all[e].results.size(); ++k) {
         const Result& result = all[e].results[k];
+        if (!result.converged) continue;
         SweepPoint point = entries[e].points[k];
         point.quantity = quantity.name;
         point.seconds = median(all[e].times[k]);

@@ -22,7 +22,7 @@ struct Quantity {
   std::function<double(const Result&)> error;
 };
 
-/// A point for each quantity, entry and tolerance, quantity by quantity.
+/// A point for each quantity, entry and tolerance, quantity by quantity; none for what did not converge.
 std::vector<SweepPoint> measured(std::vector<Entry>& entries, int rounds, const std::vector<Quantity>& quantities);
 
 std::string as_label(double value);
