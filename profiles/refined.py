@@ -9,9 +9,9 @@ increments of loading on the coarsest grid:
     tolerance = |V - value| + |V(h) - V(H)| + |V4 - V2|                    V: of the profile
 
 and no less than 1e-5 of the value, ten times the certificate, for the contact area no less than 0.7 spacing / contact
-radius of it (hertz_sphere). What is elastic is compared with Hertz, tolerances as in hertz_sphere. Two increments of each pair of
-spheres have values from finite elements instead, tolerance |V - value| + what their own refinement leaves open.
-Summaries are kept in $REFINED, if that is set, and not computed again.
+radius of it (hertz_sphere). What is elastic is compared with Hertz, tolerances as in hertz_sphere. Two increments of
+each pair of spheres have values from finite elements instead, tolerance |V - value| + what their own refinement leaves
+open. Summaries are kept in $REFINED, if that is set, and not computed again.
 """
 
 import json

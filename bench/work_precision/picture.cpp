@@ -89,7 +89,7 @@ std::string script(const Sweep& sweep, const std::string& title) {
       const std::size_t dash = one_quantity ? 0 : m;
       plot << ", \\\n " << name << " with linespoints pt " << kPoints[(one_quantity ? colour : m) % 4] << " dt "
            << dash + 1 << " lc rgb '" << kColours[colour % 6] << "' title " << cli::gnuplot_quoted(shown);
-      const bool labelled = one_quantity ? methods[m] != "mixed" : true;
+      const bool labelled = one_quantity ? methods[m] != "mixed" : q == 0;  // all quantities have the same times
       if (!labelled) continue;
       plot << ", \\\n " << name << " using 1:2:3 with labels "
            << (one_quantity && methods[m] == "textbook" ? "left offset 0.7,0.4" : "right offset -0.7,-0.4")

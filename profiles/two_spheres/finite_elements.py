@@ -7,10 +7,12 @@ Two identical spheres touch along their plane of symmetry: each is a half-space 
 the radius R of the sphere. With `one` the other sphere stays elastic: it has the same mesh, mirrored, so that nodes meet
 nodes, and is condensed to the compliance of those that may touch; with w the normal displacement of the other body's
 nodes, w = compliance · forces, contact is u + w = approach - r²/R at equal forces without friction. When FORCE is
-reached the bodies are taken apart, and the residual stress on the axis is printed. Four-node elements with the mean dilatation in place of the local one (T. J. R. Hughes, Int.
-J. Numer. Meth. Engng 15, 1980, 1413-1418), small strain, von Mises stress and Swift's law, backward Euler with the
-consistent tangent (J. C. Simo & R. L. Taylor, Comput. Meth. Appl. Mech. Engng 48, 1985, 101-118), nodes in contact found
-by their reactions. Nothing is shared with brinell. z points into the body; Voigt order rr, zz, tt, rz.
+reached the bodies are taken apart, and the residual stress on the axis is printed.
+
+Four-node elements with the mean dilatation in place of the local one (T. J. R. Hughes, Int. J. Numer. Meth. Engng 15,
+1980, 1413-1418), small strain, von Mises stress and Swift's law, backward Euler with the consistent tangent (J. C. Simo &
+R. L. Taylor, Comput. Meth. Appl. Mech. Engng 48, 1985, 101-118), nodes in contact found by their reactions. Nothing is
+shared with brinell. z points into the body; Voigt order rr, zz, tt, rz.
 """
 
 import sys
