@@ -28,6 +28,13 @@ std::vector<Quantity> errors_against(const Result& expected) {
        [=](const Result& r) { return relative(r.plastic_strain, expected.plastic_strain); }}};
 }
 
+/// The limit of what changes from one doubling of the increments to the next by a factor that lies between those of
+/// first and of second order.
+double extrapolated(double coarse, double fine, double finest) {
+  const double ratio = std::clamp((fine - coarse) / (finest - fine), 2.0, 4.0);
+  return std::isnan(ratio) ? finest : finest + (finest - fine) / (ratio - 1);
+}
+
 /// Scenes that differ in what is swept; one curve for each method.
 class Entries {
  public:
@@ -86,16 +93,18 @@ Sweep plastic_increments(const cli::SceneFile& whole, const SweepOptions& option
     return divided;
   };
   const std::int32_t most = *std::max_element(options.increments.begin(), options.increments.end());
-  const Result coarse = solved_once(engine.get(), in(2 * most)), fine = solved_once(engine.get(), in(4 * most));
+  const Result coarse = solved_once(engine.get(), in(most)), fine = solved_once(engine.get(), in(2 * most)),
+               finest = solved_once(engine.get(), in(4 * most));
+  const auto limit = [&](double Result::*value) { return extrapolated(coarse.*value, fine.*value, finest.*value); };
   Result reference;
-  reference.approach = 2 * fine.approach - coarse.approach;
-  reference.largest_pressure = 2 * fine.largest_pressure - coarse.largest_pressure;
-  reference.plastic_strain = 2 * fine.plastic_strain - coarse.plastic_strain;
+  reference.approach = limit(&Result::approach);
+  reference.largest_pressure = limit(&Result::largest_pressure);
+  reference.plastic_strain = limit(&Result::plastic_strain);
 
   Entries entries(engine.get());
   for (const std::int32_t n : options.increments) entries.add("equal increments", std::to_string(n), in(n));
   return {SweepKind::increments,
-          std::to_string(2 * most) + " and " + std::to_string(4 * most) + " increments extrapolated",
+          std::to_string(most) + " to " + std::to_string(4 * most) + " increments extrapolated",
           entries.points(options, reference)};
 }
 

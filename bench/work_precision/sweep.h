@@ -59,7 +59,7 @@ std::optional<Sweep> elastic_grids(const cli::SceneFile& scene, const SweepOptio
 Sweep plastic_tolerances(const cli::SceneFile& scene, const SweepOptions& options);
 /// over grids against the reference grid,
 Sweep plastic_grids(const cli::SceneFile& scene, const SweepOptions& options);
-/// over increments against two and four times the most, extrapolated as the first order of the increments demands.
+/// over increments against the most, two and four times as many, extrapolated by their own order.
 Sweep plastic_increments(const cli::SceneFile& scene, const SweepOptions& options);
 
 }  // namespace brinell::bench
