@@ -103,7 +103,8 @@ std::string script(const Sweep& sweep, const std::string& title) {
          << " noenhanced font ',12'\n"
          << "set xlabel 'seconds of CPU time, one thread (labels: " << swept(sweep.kind) << ")'\n"
          << "set ylabel 'relative error'\n"
-         << "set logscale xy\nset format y '10^{%L}'\nset format x '%g'\nset grid\nset key top right\n"
+         << "set logscale xy\nset format y '10^{%L}'\nset format x '%g'\nset grid\nset key top right noenhanced"
+         << (methods.size() * quantities.size() > 4 ? " font ',11'\n" : "\n")
          << "set offsets graph 0.05, graph 0.08, graph 0.05, graph 0.05\n"
          << plot.str() << '\n';
   return script.str();
