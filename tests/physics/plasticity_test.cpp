@@ -174,6 +174,75 @@ TEST(Plasticity, unloaded_leaves_no_traction_and_no_force) {
   EXPECT_LE(std::fabs(force), 1e-2 * magnitude);
 }
 
+/// Loading in so many increments beyond the elastic limit, and unloading.
+struct Cycle {
+  double work = 0;         // of the force [J]
+  double dissipation = 0;  // [J]
+  double stored = 0;       // elastic energy of the residual stress [J]
+};
+
+Cycle cycle(int increments) {
+  constexpr double elastic = 0.02, top = 0.12;  // [N]
+  constexpr int unloading = 10;
+  Press press(kSteel, 24, 0.5e-6, 16, 1e-7);
+  std::vector<double> forces{elastic};
+  for (int n = 1; n <= increments; ++n) forces.push_back(elastic + (top - elastic) * n / increments);
+  // Equal parts of the approach.
+  for (int n = unloading - 1; n >= 0; --n) forces.push_back(top * std::pow(static_cast<double>(n) / unloading, 1.5));
+  Cycle result;
+  double force = 0, approach = 0;
+  for (const double next : forces) {
+    const PlasticSolution solution = press.to(next);
+    EXPECT_TRUE(solution.converged);
+    EXPECT_GE(solution.dissipation, 0) << next;
+    result.dissipation += solution.dissipation;
+    // Work between two forces that grow like approach^1.5, as the elastic contact's: it is the small difference of
+    // what loading takes and unloading gives back.
+    const double mean = 0.4 * (std::pow(next, 5.0 / 3) - std::pow(force, 5.0 / 3)) /
+                        (std::pow(next, 2.0 / 3) - std::pow(force, 2.0 / 3));
+    result.work += mean * (solution.contact.approach - approach);
+    force = next;
+    approach = solution.contact.approach;
+  }
+  PlasticBody& body = *press.loop.body(0);
+  const plastic::Box& box = body.region().box;
+  std::vector<double> residual(6 * body.stride());
+  plastic::TensorArrays stress;
+  for (std::size_t c = 0; c < 6; ++c) stress[c] = residual.data() + c * body.stride();
+  body.residual_stress(stress);
+  for (std::size_t c = 0; c < 6; ++c) {
+    for (std::size_t n = 0; n < box.cuboids(); ++n) {
+      result.stored -= 0.5 * (c < 3 ? 1 : 2) * stress[c][n] * body.strain()[c][n] * box.dx * box.dy * box.dz;
+    }
+  }
+  return result;
+}
+
+TEST(Plasticity, the_work_of_a_cycle_is_dissipated_or_stored) {
+  const Cycle coarse = cycle(6), fine = cycle(12);
+  EXPECT_GT(fine.stored, 0.01 * fine.work);
+  // The dissipation's error is at most of first order in the increment; what is left is the contact's, which changes
+  // by whole cells.
+  const double dissipation = 2 * fine.dissipation - coarse.dissipation;
+  EXPECT_NEAR(dissipation + fine.stored, fine.work, 0.01 * fine.work);
+}
+
+TEST(Plasticity, the_imprint_converges_with_second_order) {
+  std::vector<double> imprint;
+  for (const int nodes : {12, 24, 48}) {
+    const double spacing = 12e-6 / nodes;
+    Press press(kSteel, nodes, spacing, 2 * nodes / 3, 1e-6);
+    for (const double force : {0.04, 0.08, 0.12}) ASSERT_TRUE(press.to(force).converged);
+    std::vector<double> displacement(press.grid.nodes());
+    press.loop.residual_displacement(displacement.data());
+    imprint.push_back(*std::max_element(displacement.begin(), displacement.end()));
+  }
+  // Each halving divides the difference by 4; an even number of nodes looks half a cell beside the axis, and the edge
+  // of the contact and of the flow move by whole cells.
+  const double order = std::log2((imprint[1] - imprint[0]) / (imprint[2] - imprint[1]));
+  EXPECT_NEAR(order, 2, 0.5);
+}
+
 // ------------------------------------------------------------------------------------------------- whole load
 // histories
 
