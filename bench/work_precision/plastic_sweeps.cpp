@@ -103,6 +103,11 @@ Sweep plastic_increments(const cli::SceneFile& whole, const SweepOptions& option
 
   Entries entries(engine.get());
   for (const std::int32_t n : options.increments) entries.add("equal increments", std::to_string(n), in(n));
+  for (const double tolerance : {3e-2, 1e-2, 3e-3, 1e-3, 3e-4, 1e-4}) {
+    cli::SceneFile steered = in(1);
+    steered.solver.increment_tolerance = tolerance;
+    entries.add("increment_tolerance", as_label(tolerance), steered);
+  }
   return {SweepKind::increments,
           std::to_string(most) + " to " + std::to_string(4 * most) + " increments extrapolated",
           entries.points(options, reference)};
