@@ -132,6 +132,12 @@ PlasticSolution ElasticPlastic::reach(const contact::Load& load, contact::Observ
     const bool known = !grown && std::isfinite(error.worst());
     solution.converged =
         known && error.worst() <= settings_.tolerance && contact.certificate.worst() <= settings_.tolerance;
+    if (solution.converged) {
+      for_bodies([&](PlasticBody& body) {
+        grown = body.make_room_below(contact_box(), solver_.pressure().data(), settings_.contact_modulus) || grown;
+      });
+      solution.converged = !grown;
+    }
     if (solution.converged || solution.iterations >= kIterations) {
       solution.plastic_seconds += seconds_since(last);
       return solution;

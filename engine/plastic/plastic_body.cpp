@@ -131,6 +131,20 @@ void PlasticBody::add_displacement(double weight, double* displacement) {
   for (std::size_t n = 0; n < displacement_.size(); ++n) displacement[n] += weight * displacement_[n];
 }
 
+/// The pressure above the box; false: there is none.
+bool PlasticBody::take_pressure(const double* pressure, double unit) {
+  const Box& box = region_.box;
+  bool pressed = false;
+  for (std::int64_t j = 0; j < box.ny; ++j) {
+    const double* row = pressure + (region_.j0 + j) * grid_.nx + region_.i0;
+    for (std::int64_t i = 0; i < box.nx; ++i) {
+      pressed = pressed || row[i] > 0;
+      pressure_[static_cast<std::size_t>(j * box.nx + i)] = row[i] * unit;
+    }
+  }
+  return pressed;
+}
+
 YieldError PlasticBody::evaluate(const double* pressure, double unit) {
   if (region_.empty()) return {};
   const Box& box = region_.box;
@@ -142,16 +156,8 @@ YieldError PlasticBody::evaluate(const double* pressure, double unit) {
     request.components = subsurface::kAllComponents;
     stress_ = std::make_unique<subsurface::StressField>(backend_, request, spectra_limit_);
   }
-  bool pressed = false;
-  for (std::int64_t j = 0; j < box.ny; ++j) {
-    const double* row = pressure + (region_.j0 + j) * grid_.nx + region_.i0;
-    for (std::int64_t i = 0; i < box.nx; ++i) {
-      pressed = pressed || row[i] > 0;
-      pressure_[static_cast<std::size_t>(j * box.nx + i)] = row[i] * unit;
-    }
-  }
   const TensorArrays contact = arrays(trial_);
-  if (pressed) {
+  if (take_pressure(pressure, unit)) {
     subsurface::StressFields fields;
     std::copy(contact.begin(), contact.end(), fields.component.begin());
     stress_->compute({pressure_.data(), nullptr, nullptr}, fields);

@@ -84,6 +84,9 @@ class PlasticBody {
   /// Lets it grow once flow has come near a side that is not the grid's; true if it grew.
   bool make_room_for_flow();
 
+  /// Lets it grow where a solution's stress, after evaluate(), would let cuboids below it yield; true if it grew.
+  bool make_room_below(const contact::Box& contact, const double* pressure, double unit);
+
   /// Flow in the last layer of all, or below the grid's side: what lies beyond it is unknown.
   bool flow_is_cut_off() const;
 
@@ -134,6 +137,8 @@ class PlasticBody {
   TensorView view(const Buffer<double>& field) const;
   TensorArrays arrays(Buffer<double>& field) const;
   void move_to(const Region& region);
+  std::int64_t layers_for(std::int64_t count) const;
+  bool take_pressure(const double* pressure, double unit);
   void combine();
   double try_stress();
   double distance_of_flow() const;
