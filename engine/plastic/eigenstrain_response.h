@@ -24,6 +24,7 @@
 
 #include "base/buffer.h"
 #include "fft/convolution.h"
+#include "influence/eigenstrain_table.h"
 #include "plastic/tensor_fields.h"
 
 namespace brinell::plastic {
@@ -47,7 +48,10 @@ class EigenstrainResponse {
   EigenstrainResponse(const EigenstrainResponse&) = delete;
   EigenstrainResponse& operator=(const EigenstrainResponse&) = delete;
 
-  /// What it allocates and keeps: spectra, field, scratch of every thread.
+  /// Another box of the same cuboids. What does not depend on the box is kept, and memory that is large enough.
+  void resize(const Box& box);
+
+  /// What it allocates and keeps: spectra with the potentials near the cuboid, field, scratch of every thread.
   struct Bytes {
     std::size_t spectra = 0;
     std::size_t work = 0;
@@ -63,11 +67,12 @@ class EigenstrainResponse {
 
  private:
   struct Geometry;
-  void generate(double shear_modulus);
+  void generate();
 
   fft::Backend backend_;
   Box box_;
-  double poissons_ratio_;
+  double shear_modulus_;
+  influence::EigenstrainTable potentials_;
   std::unique_ptr<const Geometry> geometry_;
   Buffer<double> spectra_;  // [block][position in y][position in z][spectral value][lane]
   Buffer<double> field_;    // [component][layer][field of the lane transform]

@@ -119,11 +119,11 @@ void PlasticBody::add_displacement(double weight, double* displacement) {
   if (region_.empty() || std::none_of(strain_.begin(), strain_.end(), [](double value) { return value != 0; })) {
     return;
   }
-  if (surface_ == nullptr || surface_->layers() < region_.box.nz) {
-    surface_.reset();
+  if (surface_ == nullptr) {
     surface_ = std::make_unique<EigenstrainDisplacement>(backend_, grid_, region_.box.nz, layers_.thickness,
                                                          material_.poissons_ratio);
   }
+  surface_->deepen(region_.box.nz);
   if (!displacement_is_current_) {
     surface_->displacement(strain(), region_.box, region_.i0, region_.j0, displacement_.data());
     displacement_is_current_ = true;
@@ -204,6 +204,7 @@ void PlasticBody::residual_stress(const TensorArrays& result) {
   if (response_ == nullptr) {
     response_ = std::make_unique<EigenstrainResponse>(backend_, box, shear_modulus_, material_.poissons_ratio);
   }
+  response_->resize(box);
   response_->stress(strain(), result);
 }
 
@@ -327,13 +328,11 @@ void PlasticBody::restore(const State& state) {
   d_ = copy_of(state.increment);
   p_old_ = copy_of(state.equivalent);
   const bool same = region_ == state.region;
-  std::unique_ptr<EigenstrainResponse> response = std::move(response_);
   std::unique_ptr<subsurface::StressField> stress = std::move(stress_);
   region_ = state.region;
   stride_ = old_.size() / kAll;
   move_to(Region(region_));
   if (!same) return;
-  response_ = std::move(response);
   stress_ = std::move(stress);
 }
 

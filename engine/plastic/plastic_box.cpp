@@ -178,7 +178,6 @@ void PlasticBody::move_to(const Region& next) {
   const Region before = region_;
   const std::size_t stride_before = stride_;
   region_ = next;
-  response_.reset();
   stress_.reset();
   const Box& box = region_.box;
   stride_ = stride_of(box);
