@@ -38,13 +38,22 @@ class Buffer {
     return buffer;
   }
 
-  /// Another size, contents undefined but for the padding. Memory that is large enough stays; else it is given back
-  /// before there is more.
+  /// Another size, contents undefined but for the padding. Memory that is large enough stays, and if there is too
+  /// little it is not held twice.
   void resize(std::size_t size) {
-    if (data_ == nullptr || padded_bytes(size) > data_.get_deleter().bytes) {
-      data_.reset();
-      size_ = 0;
-      *this = Buffer(size, Uninitialised{});
+    check_size(size);
+    const std::size_t before = data_ == nullptr ? 0 : data_.get_deleter().bytes;
+    if (padded_bytes(size) > before) {
+      if (before >= kPagesFrom) {
+        const std::size_t bytes = padded_bytes(size);
+        void* memory = resize_pages(data_.get(), before, bytes);
+        static_cast<void>(data_.release());
+        data_ = Memory(static_cast<T*>(memory), Release{bytes});
+      } else {
+        data_.reset();
+        size_ = 0;
+        *this = Buffer(size, Uninitialised{});
+      }
     }
     size_ = size;
     clear_padding();
@@ -82,11 +91,15 @@ class Buffer {
 
   Buffer(std::size_t size, Uninitialised) : size_(size) {
     if (size == 0) return;
-    if (size > static_cast<std::size_t>(-1) / 2 / sizeof(T)) throw std::bad_array_new_length();
+    check_size(size);
     const std::size_t bytes = padded_bytes(size);
     void* memory =
         bytes >= kPagesFrom ? allocate_pages(bytes) : ::operator new[](bytes, std::align_val_t{kAlignment});
     data_ = Memory(static_cast<T*>(memory), Release{bytes});
+  }
+
+  static void check_size(std::size_t size) {
+    if (size > static_cast<std::size_t>(-1) / 2 / sizeof(T)) throw std::bad_array_new_length();
   }
 
   void clear_padding() {

@@ -14,14 +14,31 @@ namespace brinell {
 
 #ifdef BRINELL_MAPS_PAGES
 
-void* allocate_pages(std::size_t bytes) {
-  void* memory = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+namespace {
+
+void* advised(void* memory, std::size_t bytes) {
   if (memory == MAP_FAILED) throw std::bad_alloc();
 #ifdef MADV_HUGEPAGE
   constexpr std::size_t kHuge = std::size_t{16} << 20;  // large pages are of 2 MB: little is rounded up
   if (bytes >= kHuge) madvise(memory, bytes, MADV_HUGEPAGE);
 #endif
   return memory;
+}
+
+}  // namespace
+
+void* allocate_pages(std::size_t bytes) {
+  return advised(mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0), bytes);
+}
+
+void* resize_pages(void* memory, std::size_t bytes, std::size_t wanted) {
+#ifdef MREMAP_MAYMOVE
+  return advised(mremap(memory, bytes, wanted, MREMAP_MAYMOVE), wanted);
+#else
+  void* other = allocate_pages(wanted);
+  release_pages(memory, bytes);
+  return other;
+#endif
 }
 
 void release_pages(void* memory, std::size_t bytes) noexcept {
@@ -36,6 +53,12 @@ void* allocate_pages(std::size_t bytes) {
   void* memory = ::operator new(bytes, kPage);
   std::memset(memory, 0, bytes);
   return memory;
+}
+
+void* resize_pages(void* memory, std::size_t bytes, std::size_t wanted) {
+  void* other = allocate_pages(wanted);
+  release_pages(memory, bytes);
+  return other;
 }
 
 void release_pages(void* memory, std::size_t) noexcept {

@@ -6,10 +6,12 @@
 
 namespace brinell {
 
-inline constexpr std::size_t kPagesFrom = std::size_t{1} << 20;  // bytes
+inline constexpr std::size_t kPagesFrom = std::size_t{4} << 20;  // bytes
 
 /// Zero-filled. Throws std::bad_alloc.
 void* allocate_pages(std::size_t bytes);
+/// Other bytes, contents undefined; on failure (std::bad_alloc) the memory is as it was.
+void* resize_pages(void* memory, std::size_t bytes, std::size_t wanted);
 void release_pages(void* memory, std::size_t bytes) noexcept;
 
 }  // namespace brinell

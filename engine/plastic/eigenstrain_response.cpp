@@ -138,7 +138,7 @@ void EigenstrainResponse::generate() {
       const double* from = spectrum + block * g.positions_y() * g.lanes;
       double* to = spectra_.data() + block * g.values_of_block() + (place * simd::kSpectralValues + value) * g.lanes;
       for (std::int64_t p = 0; p < g.positions_y(); ++p, from += g.lanes, to += of_position) {
-        std::copy_n(from, g.lanes, to);
+        for (std::int64_t lane = 0; lane < g.lanes; ++lane) to[lane] = from[lane];
       }
     }
   };

@@ -195,17 +195,21 @@ YieldError PlasticBody::evaluate(const double* pressure, double unit) {
   return error;
 }
 
+EigenstrainResponse& PlasticBody::response(const Box& box) {
+  if (response_ == nullptr) {
+    response_ = std::make_unique<EigenstrainResponse>(backend_, box, shear_modulus_, material_.poissons_ratio);
+  }
+  response_->resize(box);
+  return *response_;
+}
+
 void PlasticBody::residual_stress(const TensorArrays& result) {
   const Box& box = region_.box;
   if (std::none_of(strain_.begin(), strain_.end(), [](double value) { return value != 0; })) {
     for (double* component : result) std::fill_n(component, box.cuboids(), 0.0);
     return;
   }
-  if (response_ == nullptr) {
-    response_ = std::make_unique<EigenstrainResponse>(backend_, box, shear_modulus_, material_.poissons_ratio);
-  }
-  response_->resize(box);
-  response_->stress(strain(), result);
+  response(box).stress(strain(), result);
 }
 
 /// Total and trial stress from the residual stress and the contact's, which is in trial_; YieldError::yield.

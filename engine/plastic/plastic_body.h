@@ -114,6 +114,9 @@ class PlasticBody {
   const Buffer<double>& equivalent() const { return p_; }
   LargestPlasticStrain largest() const;
 
+  /// Response of the body's cuboids in any box.
+  EigenstrainResponse& response(const Box& box);
+
   /// Residual stress of the present strain.
   void residual_stress(const TensorArrays& result);
 

@@ -35,6 +35,11 @@ std::int64_t roomy(std::int64_t count) {
   return 8 * eights;
 }
 
+void cleared(Buffer<double>& field, std::size_t size) {
+  field.resize(size);
+  std::fill(field.begin(), field.end(), 0.0);
+}
+
 struct Side {
   std::int64_t first, count;
 };
@@ -199,9 +204,8 @@ void PlasticBody::move_to(const Region& next) {
   old_ = moved_field(old_, kAll);
   d_ = moved_field(d_, kAll);
   p_old_ = moved_field(p_old_, 1);
-  for (Buffer<double>* field : {&strain_, &mapped_, &residual_, &total_, &trial_})
-    *field = Buffer<double>(kAll * stride_);
-  for (Buffer<double>* field : {&p_, &p_mapped_, &von_mises_, &yield_}) *field = Buffer<double>(stride_);
+  for (Buffer<double>* field : {&strain_, &mapped_, &residual_, &total_, &trial_}) cleared(*field, kAll * stride_);
+  for (Buffer<double>* field : {&p_, &p_mapped_, &von_mises_, &yield_}) cleared(*field, stride_);
   std::copy(old_.begin(), old_.end(), strain_.begin());
   std::copy(p_old_.begin(), p_old_.end(), p_.begin());
   std::copy(p_old_.begin(), p_old_.end(), p_mapped_.begin());
