@@ -101,9 +101,10 @@ EigenstrainResponse::Bytes EigenstrainResponse::bytes(const fft::Backend& backen
   const influence::EigenstrainTable::Bytes potentials = influence::EigenstrainTable::bytes(
       influence::Eigenstrain(box.dx, box.dy, box.dz, 0), backend.arena.threads(), box.nx, box.ny, box.nz);
   return {
-      Buffer<double>::padded_bytes(geometry.spectra_size()) + potentials.kept,
+      Buffer<double>::padded_bytes(geometry.spectra_size()),
       Buffer<double>::padded_bytes(geometry.field_size()) + Buffer<double>::padded_bytes(geometry.scratch * threads),
-      std::max(potentials.work, Buffer<double>::padded_bytes(geometry.generation_size(box) * threads))};
+      std::max(potentials.work, Buffer<double>::padded_bytes(geometry.generation_size(box) * threads)),
+      potentials.kept};
 }
 
 void EigenstrainResponse::generate() {

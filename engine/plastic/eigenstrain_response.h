@@ -51,11 +51,12 @@ class EigenstrainResponse {
   /// Another box of the same cuboids. What does not depend on the box is kept, and memory that is large enough.
   void resize(const Box& box);
 
-  /// What it allocates and keeps: spectra with the potentials near the cuboid, field, scratch of every thread.
+  /// What it allocates and keeps: spectra, field, scratch of every thread, potentials near the cuboid.
   struct Bytes {
     std::size_t spectra = 0;
     std::size_t work = 0;
     std::size_t generation = 0;  // more, while the spectra are generated
+    std::size_t potentials = 0;  // for boxes to come
   };
   static Bytes bytes(const fft::Backend& backend, const Box& box);
 

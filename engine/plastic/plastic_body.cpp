@@ -348,13 +348,16 @@ std::size_t PlasticBody::bytes(const fft::Backend& backend, const Grid& grid, co
   request.depths = subsurface::layer_depths(layers.count, layers.thickness);
   request.components = subsurface::kAllComponents;
   const subsurface::StressPlan stress = subsurface::plan_stress(backend, request, spectra_limit);
+  request.components = {};
+  request.invariants = {subsurface::Invariant::von_mises};
+  const std::size_t below = subsurface::plan_stress(backend, request, 0).work_bytes;
   const EigenstrainResponse::Bytes response = EigenstrainResponse::bytes(backend, box);
   const EigenstrainResponse::Bytes surface =
       EigenstrainDisplacement::bytes(backend, grid, layers.count, layers.thickness);
   constexpr std::size_t kFields = 2 * 7 * kAll + 6;  // while the box grows, some twice; and the state to go back to
-  return stress.kept_bytes + stress.work_bytes + response.spectra + response.work + surface.spectra + surface.work +
-         std::max(response.generation, surface.generation) + kFields * Buffer<double>::padded_bytes(box.cuboids()) +
-         2 * Buffer<double>::padded_bytes(grid.nodes());
+  return stress.kept_bytes + stress.work_bytes + below + response.spectra + response.work + response.potentials +
+         surface.spectra + surface.work + std::max(response.generation, surface.generation) +
+         kFields * Buffer<double>::padded_bytes(box.cuboids()) + 3 * Buffer<double>::padded_bytes(grid.nodes());
 }
 
 }  // namespace brinell::plastic
