@@ -71,12 +71,21 @@ EigenstrainResponse::EigenstrainResponse(const fft::Backend& backend, const Box&
     : backend_(backend),
       box_(box),
       shear_modulus_(shear_modulus),
-      potentials_(influence::Eigenstrain(box.dx, box.dy, box.dz, poissons_ratio)) {
+      potentials_(std::make_shared<influence::EigenstrainTable>(
+          influence::Eigenstrain(box.dx, box.dy, box.dz, poissons_ratio))) {
   check_box(box);
   if (!(shear_modulus > 0) || !std::isfinite(shear_modulus)) {
     fail(Status::invalid_argument, "shear_modulus = " + text(shear_modulus) + ": must be positive");
   }
   generate();
+}
+
+EigenstrainResponse::EigenstrainResponse(const EigenstrainResponse& other, const Box& box)
+    : backend_(other.backend_),
+      box_(other.box_),
+      shear_modulus_(other.shear_modulus_),
+      potentials_(other.potentials_) {
+  resize(box);
 }
 
 void EigenstrainResponse::resize(const Box& box) {
@@ -108,7 +117,7 @@ EigenstrainResponse::Bytes EigenstrainResponse::bytes(const fft::Backend& backen
 }
 
 void EigenstrainResponse::generate() {
-  const influence::Eigenstrain& cuboid = potentials_.cuboid();
+  const influence::Eigenstrain& cuboid = potentials_->cuboid();
   auto geometry = std::make_unique<Geometry>(backend_, box_);
   const Geometry& g = *geometry;
   const fft::LaneCarrier<double>& carrier = *g.carrier;
@@ -122,7 +131,7 @@ void EigenstrainResponse::generate() {
   const double points = 0.25 * static_cast<double>(carrier.padded_nx()) * static_cast<double>(carrier.padded_ny());
   geometry->transform.own = 2 * shear_modulus_ / (points * static_cast<double>(g.length_z()));
 
-  potentials_.cover(backend_.arena, box_.nx, box_.ny, nz);
+  potentials_->cover(backend_.arena, box_.nx, box_.ny, nz);
   spectra_.resize(g.spectra_size());
   const std::size_t part = g.generation_size(box_);
   Buffer<double> memory = Buffer<double>::uninitialised(part * static_cast<std::size_t>(backend_.arena.threads()));
@@ -149,14 +158,14 @@ void EigenstrainResponse::generate() {
     const std::size_t behind = (static_cast<std::size_t>(simd::kImagePotentials * nodes) + 7) / 8 * 8;
     for (std::int64_t layer = begin; layer < end; ++layer) {
       if (layer < nz) {
-        potentials_.fill_kelvin(kernels, layer, box_.nx, box_.ny, work);
+        potentials_->fill_kelvin(kernels, layer, box_.nx, box_.ny, work);
         for (int k = 0; k < simd::kKelvinPotentials; ++k) {
           put(work + k * nodes, influence::kelvin_parities(k), work + behind, layer, k);
         }
         continue;
       }
       const std::int64_t above = layer - nz + 1;  // 1 … 2nz − 1 layers
-      potentials_.fill_image(kernels, above, box_.nx, box_.ny, work);
+      potentials_->fill_image(kernels, above, box_.nx, box_.ny, work);
       const std::int64_t place = std::abs(above - nz);
       const int first = simd::kKelvinPotentials + (above < nz ? simd::kImagePotentials : 0);
       for (int k = 0; k < simd::kImagePotentials; ++k) {

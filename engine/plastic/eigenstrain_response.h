@@ -44,6 +44,8 @@ class EigenstrainResponse {
  public:
   /// Generates the spectra. Throws Status::invalid_argument for what is no box or material, Status::too_large.
   EigenstrainResponse(const fft::Backend& backend, const Box& box, double shear_modulus, double poissons_ratio);
+  /// The same cuboids in another box, with the potentials near them in common: not while another thread uses either.
+  EigenstrainResponse(const EigenstrainResponse& other, const Box& box);
   ~EigenstrainResponse();
   EigenstrainResponse(const EigenstrainResponse&) = delete;
   EigenstrainResponse& operator=(const EigenstrainResponse&) = delete;
@@ -73,7 +75,7 @@ class EigenstrainResponse {
   fft::Backend backend_;
   Box box_;
   double shear_modulus_;
-  influence::EigenstrainTable potentials_;
+  std::shared_ptr<influence::EigenstrainTable> potentials_;
   std::unique_ptr<const Geometry> geometry_;
   Buffer<double> spectra_;  // [block][position in y][position in z][spectral value][lane]
   Buffer<double> field_;    // [component][layer][field of the lane transform]

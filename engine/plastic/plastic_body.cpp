@@ -195,12 +195,9 @@ YieldError PlasticBody::evaluate(const double* pressure, double unit) {
   return error;
 }
 
-EigenstrainResponse& PlasticBody::response(const Box& box) {
-  if (response_ == nullptr) {
-    response_ = std::make_unique<EigenstrainResponse>(backend_, box, shear_modulus_, material_.poissons_ratio);
-  }
-  response_->resize(box);
-  return *response_;
+std::unique_ptr<EigenstrainResponse> PlasticBody::response(const Box& box) const {
+  if (response_ != nullptr) return std::make_unique<EigenstrainResponse>(*response_, box);
+  return std::make_unique<EigenstrainResponse>(backend_, box, shear_modulus_, material_.poissons_ratio);
 }
 
 void PlasticBody::residual_stress(const TensorArrays& result) {
@@ -209,7 +206,9 @@ void PlasticBody::residual_stress(const TensorArrays& result) {
     for (double* component : result) std::fill_n(component, box.cuboids(), 0.0);
     return;
   }
-  response(box).stress(strain(), result);
+  if (response_ == nullptr) response_ = response(box);
+  response_->resize(box);
+  response_->stress(strain(), result);
 }
 
 /// Total and trial stress from the residual stress and the contact's, which is in trial_; YieldError::yield.

@@ -7,9 +7,9 @@
 // it. The equivalent plastic strain is p = p_before + √(2/3 d:d). z points into the body, whichever it is.
 //
 // The box begins at the surface and lies below part of the grid. It holds every node that is in contact, so that the
-// stress under the contact needs no others, and all flow, with a margin of a few cuboids: the time of a pass goes with
-// its size. It grows as either comes near a side, and downwards where a solution's stress would let what lies below
-// it yield. What it holds stays. Fields are [k][j][i] in the box; the six components are `stride` values apart.
+// stress under the contact needs no others, and all flow, with a margin of a few cuboids: the time of a pass goes
+// with its size. It grows as either comes near a side, and downwards where a solution's stress would let what lies
+// below it yield. What it holds stays. Fields are [k][j][i] in the box; the six components are `stride` values apart.
 #pragma once
 
 #include <array>
@@ -115,8 +115,8 @@ class PlasticBody {
   const Buffer<double>& equivalent() const { return p_; }
   LargestPlasticStrain largest() const;
 
-  /// Response of the body's cuboids in any box.
-  EigenstrainResponse& response(const Box& box);
+  /// Another response of the body's cuboids, in a box of the caller's.
+  std::unique_ptr<EigenstrainResponse> response(const Box& box) const;
 
   /// Residual stress of the present strain.
   void residual_stress(const TensorArrays& result);

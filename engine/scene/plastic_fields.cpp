@@ -42,7 +42,7 @@ Buffer<double> PlasticFields::spread(const plastic::PlasticBody& body, const dou
 }
 
 const Buffer<double>& PlasticFields::residual_stress(Which which) {
-  plastic::PlasticBody& one = body(which);
+  const plastic::PlasticBody& one = body(which);
   const plastic::Box box = whole_box(scene_);
   Buffer<double>& result = residual_[which];
   if (result.empty()) result = Buffer<double>::uninitialised(6 * box.cuboids());
@@ -53,7 +53,9 @@ const Buffer<double>& PlasticFields::residual_stress(Which which) {
     std::copy(strain.begin(), strain.end(), target[c]);
   }
   if (std::none_of(result.begin(), result.end(), [](double value) { return value != 0; })) return result;
-  one.response(box).stress({target[0], target[1], target[2], target[3], target[4], target[5]}, target);
+  auto& response = response_[pair_.identical() ? 0 : static_cast<std::size_t>(which)];
+  if (response == nullptr) response = one.response(box);
+  response->stress({target[0], target[1], target[2], target[3], target[4], target[5]}, target);
   return result;
 }
 
@@ -85,9 +87,12 @@ const Buffer<double>& PlasticFields::field(Field field) {
   return made_[field] = std::move(values);
 }
 
-std::size_t PlasticFields::bytes(const Scene& scene) {
+std::size_t PlasticFields::bytes(Engine& engine, const Scene& scene) {
+  const plastic::Box box = whole_box(scene);
+  const auto response = plastic::EigenstrainResponse::bytes(engine.resources().backend, box);
   constexpr std::size_t kFields = 2 * 6 + 1;  // total and residual stress, one on its way
-  return kFields * Buffer<double>::padded_bytes(whole_box(scene).cuboids());
+  return response.spectra + response.work + response.generation +
+         kFields * Buffer<double>::padded_bytes(box.cuboids());
 }
 
 }  // namespace brinell::scene

@@ -3,11 +3,14 @@
 // of fields.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <map>
+#include <memory>
 
 #include "base/buffer.h"
 #include "plastic/elastic_plastic.h"
+#include "scene/engine.h"
 #include "scene/field.h"
 #include "scene/scene.h"
 
@@ -16,7 +19,8 @@ namespace brinell::scene {
 class PlasticFields {
  public:
   /// All outlive this.
-  PlasticFields(const Scene& scene, plastic::ElasticPlastic& pair) : scene_(scene), pair_(pair) {}
+  PlasticFields(Engine& engine, const Scene& scene, plastic::ElasticPlastic& pair)
+      : engine_(engine), scene_(scene), pair_(pair) {}
 
   /// What was made belongs to an earlier state.
   void forget() { made_.clear(); }
@@ -27,15 +31,17 @@ class PlasticFields {
   /// Six fields of all nodes and layers, one after the other [Pa].
   const Buffer<double>& residual_stress(Which body);
 
-  /// The most that the residual stress of one body takes, beyond what PlasticBody::bytes has.
-  static std::size_t bytes(const Scene& scene);
+  /// The most that the residual stress of one body takes.
+  static std::size_t bytes(Engine& engine, const Scene& scene);
 
  private:
   plastic::PlasticBody& body(Which which) const;
   Buffer<double> spread(const plastic::PlasticBody& body, const double* values) const;
 
+  Engine& engine_;
   const Scene& scene_;
   plastic::ElasticPlastic& pair_;
+  std::array<std::unique_ptr<plastic::EigenstrainResponse>, 2> response_;  // of the whole grid; null until needed
   std::map<Field, Buffer<double>> made_;
   std::map<Which, Buffer<double>> residual_;
 };

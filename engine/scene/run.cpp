@@ -102,7 +102,7 @@ void Run::prepare() {
         engine_.resources(), grid, gap_.data(), present_gap_.data(), *solver_, pair,
         plastic::PairSettings{contact_modulus_, scene_.layers(), settings.tolerance, settings.max_iterations,
                               plan_.plastic_spectra_limit});
-    plastic_fields_ = std::make_unique<PlasticFields>(scene_, *plastic_);
+    plastic_fields_ = std::make_unique<PlasticFields>(engine_, scene_, *plastic_);
   }
   if (increments_.empty()) {
     step_origin_ = {0, std::min(0.0, solver_->first_touch())};

@@ -96,7 +96,7 @@ std::vector<StressStagePart> StressStage::parts(Engine& engine, const Scene& sce
     if (kept > 0) parts.push_back({"coefficients kept for the next increment" + of_body, kept});
     parts.push_back({"transforms, layers under way" + of_body, work});
     if (scene.hardens(body)) {
-      parts.push_back({"total and residual stress" + of_body, PlasticFields::bytes(scene)});
+      parts.push_back({"total and residual stress" + of_body, PlasticFields::bytes(engine, scene)});
     }
   }
   if (!parts.empty()) parts.push_back({shears > 0 ? "pressure and shear" : "pressure", (1 + shears) * surface_field});

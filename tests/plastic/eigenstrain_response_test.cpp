@@ -285,6 +285,9 @@ TEST(EigenstrainResponse, resized_gives_the_bits_of_a_new_one) {
     TensorField stress(box, std::numeric_limits<double>::quiet_NaN());
     response.stress(strain.pointers(), stress.pointers());
     EXPECT_EQ(stress.memory, stress_of(engine, box, strain).memory);
+    EigenstrainResponse other(response, box);
+    other.stress(strain.pointers(), stress.pointers());
+    EXPECT_EQ(stress.memory, stress_of(engine, box, strain).memory);
   }
   EXPECT_THROW(response.resize({8, 12, 3, 1, 0.8, 1.3}), Error);
   EXPECT_THROW(response.resize({8, 0, 3, 1, 0.8, 1.2}), Error);
