@@ -2,9 +2,6 @@
 #include <brinell.h>
 
 #include <CLI/CLI.hpp>
-#ifdef __GLIBC__
-#include <malloc.h>
-#endif
 #include <csignal>
 #include <functional>
 #include <iostream>
@@ -185,11 +182,6 @@ class Program {
 }  // namespace
 
 int main(int count, char** arguments) {
-#ifdef __GLIBC__
-  // Fields that are freed go back to the system. By default glibc keeps blocks of up to 32 MB, and boxes that grow
-  // with the plastic strain leave holes among them.
-  mallopt(M_MMAP_THRESHOLD, 1 << 20);
-#endif
   std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is then an error of the write like a full disk
   return Program().run(count, arguments);
 }

@@ -7,12 +7,15 @@
 #include <new>
 #include <span>
 #include <type_traits>
+#include <utility>
+
+#include "base/pages.h"
 
 namespace brinell {
 
 inline constexpr std::size_t kAlignment = 64;
 
-/// Fixed-size array of trivial T, 64-byte aligned. Its allocation is rounded up to whole cache lines, and the
+/// Array of trivial T, 64-byte aligned. Its allocation is rounded up to whole cache lines, and the
 /// padding behind size() is zero, so that kernels may read (never rely on) whole registers past the end.
 template <class T>
 class Buffer {
@@ -23,16 +26,37 @@ class Buffer {
 
   /// Zero-filled.
   explicit Buffer(std::size_t size) : Buffer(size, Uninitialised{}) {
-    if (size != 0) std::memset(static_cast<void*>(data_.get()), 0, padded_bytes(size));
+    if (size != 0 && !data_.get_deleter().fresh()) {
+      std::memset(static_cast<void*>(data_.get()), 0, padded_bytes(size));
+    }
   }
 
   /// Contents undefined but for the padding; for fields that are wholly written before they are read.
   static Buffer uninitialised(std::size_t size) {
     Buffer buffer(size, Uninitialised{});
-    if (size != 0) {
-      std::memset(static_cast<void*>(buffer.data_.get() + size), 0, padded_bytes(size) - size * sizeof(T));
-    }
+    buffer.clear_padding();
     return buffer;
+  }
+
+  /// Another size, contents undefined but for the padding. Memory that is large enough stays, and if there is too
+  /// little it is not held twice.
+  void resize(std::size_t size) {
+    check_size(size);
+    const std::size_t before = data_ == nullptr ? 0 : data_.get_deleter().bytes;
+    if (padded_bytes(size) > before) {
+      if (before >= kPagesFrom) {
+        const std::size_t bytes = padded_bytes(size);
+        void* memory = resize_pages(data_.get(), before, bytes);
+        static_cast<void>(data_.release());
+        data_ = Memory(static_cast<T*>(memory), Release{bytes});
+      } else {
+        data_.reset();
+        size_ = 0;
+        *this = Buffer(size, Uninitialised{});
+      }
+    }
+    size_ = size;
+    clear_padding();
   }
 
   T* data() { return data_.get(); }
@@ -56,16 +80,33 @@ class Buffer {
  private:
   struct Uninitialised {};
   struct Release {
-    void operator()(T* memory) const { ::operator delete[](memory, std::align_val_t{kAlignment}); }
+    std::size_t bytes = 0;
+    bool fresh() const { return bytes >= kPagesFrom; }  // zero from the system
+    void operator()(T* memory) const {
+      if (fresh()) return release_pages(memory, bytes);
+      ::operator delete[](memory, std::align_val_t{kAlignment});
+    }
   };
+  using Memory = std::unique_ptr<T[], Release>;
 
   Buffer(std::size_t size, Uninitialised) : size_(size) {
     if (size == 0) return;
-    if (size > static_cast<std::size_t>(-1) / 2 / sizeof(T)) throw std::bad_array_new_length();
-    data_.reset(static_cast<T*>(::operator new[](padded_bytes(size), std::align_val_t{kAlignment})));
+    check_size(size);
+    const std::size_t bytes = padded_bytes(size);
+    void* memory =
+        bytes >= kPagesFrom ? allocate_pages(bytes) : ::operator new[](bytes, std::align_val_t{kAlignment});
+    data_ = Memory(static_cast<T*>(memory), Release{bytes});
   }
 
-  std::unique_ptr<T[], Release> data_;
+  static void check_size(std::size_t size) {
+    if (size > static_cast<std::size_t>(-1) / 2 / sizeof(T)) throw std::bad_array_new_length();
+  }
+
+  void clear_padding() {
+    if (size_ != 0) std::memset(static_cast<void*>(data_.get() + size_), 0, padded_bytes(size_) - size_ * sizeof(T));
+  }
+
+  Memory data_;
   std::size_t size_ = 0;
 };
 

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "base/error.h"
 #include "influence/eigenstrain_corners.h"
@@ -163,6 +164,17 @@ Eigenstrain::Eigenstrain(double dx, double dy, double dz, double poissons_ratio)
   dz_ = std::ldexp(dz, -exponent);
 }
 
+std::int64_t Eigenstrain::near_count(double side, double beside2, std::int64_t most) const {
+  const double far = kFar * std::max({dx_, dy_, dz_});
+  auto count = static_cast<std::int64_t>(std::min(static_cast<double>(most), far / side + 2));
+  const auto near = [&](std::int64_t i) {
+    const double x = static_cast<double>(i) * side;
+    return x * x + beside2 < far * far;
+  };
+  while (count > 0 && !near(count - 1)) --count;
+  return count;
+}
+
 void Eigenstrain::fill_row(const simd::EigenstrainKernels& kernels, Which which, double z, double y, double dx,
                            std::int64_t first, std::int64_t count, double* rows, std::int64_t stride) const {
   const simd::Cuboid cuboid{0.5 * dx_, 0.5 * dy_, 0.5 * dz_};
@@ -185,24 +197,26 @@ void Eigenstrain::fill_row(const simd::EigenstrainKernels& kernels, Which which,
         break;
     }
   }
-  if (i == end) return;
-  const simd::RowSpan span{dx, y, i, end - i};
+  fill_points(kernels, which, z, y, dx, i, end, rows + (i - first), stride);
+}
+
+/// By the product rule.
+void Eigenstrain::fill_points(const simd::EigenstrainKernels& kernels, Which which, double z, double y, double dx,
+                              std::int64_t first, std::int64_t end, double* rows, std::int64_t stride) const {
+  if (first == end) return;
+  const simd::Cuboid cuboid{0.5 * dx_, 0.5 * dy_, 0.5 * dz_};
+  const simd::RowSpan span{dx, y, first, end - first};
   const simd::GaussRule& rule = gauss_legendre(kNodes);
-  double* place = rows + (i - first);
   switch (which) {
-    case Which::kelvin: return kernels.kelvin_points(cuboid, rule, z, span, place, stride);
-    case Which::image: return kernels.image_points(cuboid, rule, z, span, place, stride);
-    case Which::surface: return kernels.surface_points(cuboid, rule, z, nu_, span, place, stride);
+    case Which::kelvin: return kernels.kelvin_points(cuboid, rule, z, span, rows, stride);
+    case Which::image: return kernels.image_points(cuboid, rule, z, span, rows, stride);
+    case Which::surface: return kernels.surface_points(cuboid, rule, z, nu_, span, rows, stride);
   }
 }
 
-void Eigenstrain::fill(const simd::EigenstrainKernels& kernels, Which which, double z, std::int64_t nx,
-                       std::int64_t ny, double* rows) const {
+/// Odd potentials vanish on their axis; a sum of rounded terms need not.
+void Eigenstrain::clear_odd(Which which, double z, std::int64_t nx, std::int64_t ny, double* rows) const {
   const std::int64_t nodes = nx * ny;
-  for (std::int64_t j = 0; j < ny; ++j) {
-    fill_row(kernels, which, z, static_cast<double>(j) * dy_, dx_, 0, nx, rows + j * nx, nodes);
-  }
-  // Odd potentials vanish on their axis; a sum of rounded terms need not.
   const int count = which == Which::kelvin  ? simd::kKelvinPotentials
                     : which == Which::image ? simd::kImagePotentials
                                             : simd::kSurfacePotentials;
@@ -215,6 +229,92 @@ void Eigenstrain::fill(const simd::EigenstrainKernels& kernels, Which which, dou
     for (std::int64_t j = 0; odd.x == fft::Parity::odd && j < ny; ++j) quarter[j * nx] = 0;
     if (which == Which::kelvin && z == 0 && kelvin_odd_in_z(k)) std::fill_n(quarter, nodes, 0.0);
   }
+}
+
+void Eigenstrain::fill(const simd::EigenstrainKernels& kernels, Which which, double z, std::int64_t nx,
+                       std::int64_t ny, double* rows) const {
+  for (std::int64_t j = 0; j < ny; ++j) {
+    fill_row(kernels, which, z, static_cast<double>(j) * dy_, dx_, 0, nx, rows + j * nx, nx * ny);
+  }
+  clear_odd(which, z, nx, ny, rows);
+}
+
+Eigenstrain::Extent Eigenstrain::near_extent(std::int64_t layer) const {
+  constexpr std::int64_t kMost = std::numeric_limits<std::int32_t>::max();
+  const double z = static_cast<double>(layer) * dz_;
+  return {near_count(dx_, z * z, kMost), near_count(dy_, z * z, kMost)};
+}
+
+std::size_t Eigenstrain::near_scratch_bytes(const Extent& extent) {
+  return 2 * sizeof(Long) * simd::kImagePotentials * static_cast<std::size_t>((extent.nx + 1) * (extent.ny + 1));
+}
+
+void Eigenstrain::fill_near(Potentials which, std::int64_t first, std::int64_t layers, const Extent& extent,
+                            double* const* values) const {
+  const bool image = which == Potentials::image;
+  const int potentials = image ? simd::kImagePotentials : simd::kKelvinPotentials;
+  const std::int64_t row = (extent.nx + 1) * potentials;  // of corners
+  std::vector<Long> upper(static_cast<std::size_t>((extent.ny + 1) * row)), lower(upper.size());
+  const auto beside2 = [](double y, double z) { return y * y + z * z; };
+  const auto corners = [&](std::int64_t plane, std::vector<Long>& sums) {  // at z = (plane − 1/2) dz
+    const double nearest = static_cast<double>(std::max(plane - 1, first)) * dz_;
+    for (std::int64_t j = 0; j <= extent.ny; ++j) {
+      const double y = static_cast<double>(std::max<std::int64_t>(0, j - 1)) * dy_;
+      const std::int64_t count = near_count(dx_, beside2(y, nearest), extent.nx);
+      Long* place = sums.data() + j * row;
+      for (std::int64_t i = 0; count > 0 && i <= count; ++i, place += potentials) {
+        const auto half = [](std::int64_t n, double side) { return (static_cast<Long>(n) - 0.5L) * Long{side}; };
+        const EigenstrainCorner at(half(i, dx_), half(j, dy_), half(plane, dz_));
+        if (image) {
+          std::array<Long, simd::kImagePotentials> of_corner;
+          image_at(at, of_corner);
+          std::copy(of_corner.begin(), of_corner.end(), place);
+        } else {
+          std::array<Long, simd::kKelvinPotentials> of_corner;
+          kelvin_at(at, of_corner);
+          std::copy(of_corner.begin(), of_corner.end(), place);
+        }
+      }
+    }
+  };
+  corners(first, lower);
+  for (std::int64_t layer = first; layer < first + layers; ++layer) {
+    corners(layer + 1, upper);
+    const double z = static_cast<double>(layer) * dz_;
+    double* result = values[layer - first];
+    for (std::int64_t j = 0; j < extent.ny; ++j) {
+      const std::int64_t count = near_count(dx_, beside2(static_cast<double>(j) * dy_, z), extent.nx);
+      for (std::int64_t i = 0; i < count; ++i) {
+        const auto at = static_cast<std::size_t>(j * row + i * potentials);
+        const auto next = static_cast<std::size_t>(potentials), above = static_cast<std::size_t>(row);
+        for (std::size_t k = 0; k < next; ++k) {
+          const auto face = [&](const std::vector<Long>& sums) {
+            return (sums[at + above + next + k] - sums[at + above + k]) - (sums[at + next + k] - sums[at + k]);
+          };
+          result[(static_cast<std::int64_t>(k) * extent.ny + j) * extent.nx + i] =
+              static_cast<double>(face(upper) - face(lower));
+        }
+      }
+    }
+    std::swap(upper, lower);
+  }
+}
+
+void Eigenstrain::fill_layer(const simd::EigenstrainKernels& kernels, Potentials which, std::int64_t layer,
+                             std::int64_t nx, std::int64_t ny, const Extent& extent, const double* near,
+                             double* potentials) const {
+  const bool image = which == Potentials::image;
+  const Which kind = image ? Which::image : Which::kelvin;
+  const double z = static_cast<double>(layer) * dz_;
+  for (std::int64_t j = 0; j < ny; ++j) {
+    const double y = static_cast<double>(j) * dy_;
+    const std::int64_t count = near_count(dx_, y * y + z * z, nx);
+    for (int k = 0; count > 0 && k < (image ? simd::kImagePotentials : simd::kKelvinPotentials); ++k) {
+      std::copy_n(near + (k * extent.ny + j) * extent.nx, count, potentials + (k * ny + j) * nx);
+    }
+    fill_points(kernels, kind, z, y, dx_, count, nx, potentials + j * nx + count, nx * ny);
+  }
+  clear_odd(kind, z, nx, ny, potentials);
 }
 
 void Eigenstrain::fill_kelvin(const simd::EigenstrainKernels& kernels, double z, std::int64_t nx, std::int64_t ny,

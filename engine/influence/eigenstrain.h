@@ -70,13 +70,36 @@ class Eigenstrain {
   void fill_displacement(const simd::EigenstrainKernels& kernels, double depth, std::int64_t nx, std::int64_t ny,
                          double* displacements) const;
 
+  /// Near the cuboid the offsets of layer after layer share the corners of the closed forms. Layer `layer` lies at
+  /// z = layer·dz; it is near at offsets i·dx, j·dy within a circle, which the rectangle of what is returned holds.
+  enum class Potentials { kelvin, image };
+  struct Extent {
+    std::int64_t nx = 0, ny = 0;
+    friend bool operator==(const Extent&, const Extent&) = default;
+  };
+  Extent near_extent(std::int64_t layer) const;
+  /// values[n]: [potential][j·nx + i] of layer first + n where it is near, the rest is left alone; first >= 1 for the
+  /// image. The extent is at most that of the first layer.
+  void fill_near(Potentials which, std::int64_t first, std::int64_t layers, const Extent& extent,
+                 double* const* values) const;
+  static std::size_t near_scratch_bytes(const Extent& extent);  // of one call
+
+  /// As fill_kelvin and fill_image at z = layer·dz, with what fill_near made of an extent at least as large.
+  void fill_layer(const simd::EigenstrainKernels& kernels, Potentials which, std::int64_t layer, std::int64_t nx,
+                  std::int64_t ny, const Extent& extent, const double* near, double* potentials) const;
+
   double unit() const { return unit_; }  // a power of two near the longest side [m]
   double poissons_ratio() const { return nu_; }
 
  private:
   enum class Which { kelvin, image, surface };
+  /// How many offsets of whole cells of this side are near, beside2 the square of the distance across.
+  std::int64_t near_count(double side, double beside2, std::int64_t most) const;
   void fill_row(const simd::EigenstrainKernels& kernels, Which which, double z, double y, double dx,
                 std::int64_t first, std::int64_t count, double* rows, std::int64_t stride) const;
+  void fill_points(const simd::EigenstrainKernels& kernels, Which which, double z, double y, double dx,
+                   std::int64_t first, std::int64_t end, double* rows, std::int64_t stride) const;
+  void clear_odd(Which which, double z, std::int64_t nx, std::int64_t ny, double* rows) const;
   void fill(const simd::EigenstrainKernels& kernels, Which which, double z, std::int64_t nx, std::int64_t ny,
             double* rows) const;
 

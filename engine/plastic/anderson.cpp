@@ -14,11 +14,8 @@ constexpr double kIndependent = 1e-10;
 }  // namespace
 
 void Anderson::start(std::size_t size) {
-  if (size != size_) {
-    history_ = Buffer<double>((2 * depth_ + 2) * size);
-  } else if (begun_) {
-    std::fill(history_.begin(), history_.end(), 0.0);
-  }
+  if (size != size_) history_.resize((2 * depth_ + 2) * size);
+  known_.assign(size / kBlock, 0);
   size_ = size;
   steps_ = 0;
   begun_ = false;
@@ -83,6 +80,11 @@ void Anderson::advance(std::span<const AndersonPart> parts) {
     double* sum = sums.data() + static_cast<std::size_t>(begin / kBlocksOfChunk) * 2 * depth_;
     for (std::int64_t k = begin; k < end; ++k) {
       const Place& place = places[static_cast<std::size_t>(k)];
+      if (std::uint8_t& known = known_[place.at / kBlock]; known == 0) {  // it was zero
+        for (std::size_t j = 0; j < 2 * depth_ + 2; ++j)
+          std::fill_n(history_.data() + j * size_ + place.at, kBlock, 0.0);
+        known = 1;
+      }
       double* before = last_residual + place.at;
       double* mapped_before = last_mapped + place.at;
       double* step = residual_step(newest) + place.at;

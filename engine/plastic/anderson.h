@@ -54,11 +54,12 @@ class Anderson {
   const parallel::Arena& arena_;
   std::size_t depth_;
   std::size_t size_ = 0;
-  Buffer<double> history_;     // last residual, last mapped, then pairs of differences
-  std::size_t steps_ = 0;      // differences that were taken
-  bool begun_ = false;         // a residual is there
-  std::vector<double> gram_;   // depth × depth: of the differences of residuals
-  std::vector<double> right_;  // depth: with the present residual
+  Buffer<double> history_;           // last residual, last mapped, then pairs of differences
+  std::vector<std::uint8_t> known_;  // blocks whose history is there
+  std::size_t steps_ = 0;            // differences that were taken
+  bool begun_ = false;               // a residual is there
+  std::vector<double> gram_;         // depth × depth: of the differences of residuals
+  std::vector<double> right_;        // depth: with the present residual
 };
 
 }  // namespace brinell::plastic

@@ -1,6 +1,7 @@
 #include "plastic/eigenstrain_displacement.h"
 
 #include <algorithm>
+#include <iterator>
 #include <string>
 
 #include "fft/lane_carrier.h"
@@ -38,9 +39,7 @@ struct EigenstrainDisplacement::Geometry {
   }
 
   std::int64_t transform_of_block() const { return 4 * lanes * carrier->columns().tree.length; }
-  std::size_t spectra_size(std::int64_t layers) const {
-    return static_cast<std::size_t>(layers * kColumns) * carrier->spectrum_size();
-  }
+  std::size_t spectra_size() const { return kColumns * carrier->spectrum_size(); }  // of a layer
   std::size_t fields_size() const { return static_cast<std::size_t>(group * kColumns) * carrier->field_size(); }
   std::size_t generation_size(const Box& box) const {
     const std::size_t layer = static_cast<std::size_t>(simd::kSurfacePotentials * box.nx * box.ny);
@@ -55,14 +54,20 @@ struct EigenstrainDisplacement::Geometry {
 
 EigenstrainDisplacement::EigenstrainDisplacement(const fft::Backend& backend, const Grid& grid, std::int64_t layers,
                                                  double dz, double poissons_ratio)
-    : backend_(backend), grid_(grid), layers_(layers), dz_(dz) {
-  check_box(whole_box(grid, layers, dz));
-  geometry_ = std::make_unique<const Geometry>(backend, whole_box(grid, layers, dz));
-  generate(poissons_ratio);
+    : backend_(backend), grid_(grid), dz_(dz), poissons_ratio_(poissons_ratio) {
+  deepen(layers);
+}
+
+void EigenstrainDisplacement::deepen(std::int64_t layers) {
+  const Box box = whole_box(grid_, layers, dz_);
+  check_box(box);
+  if (layers <= this->layers()) return;
+  geometry_ = std::make_unique<const Geometry>(backend_, box);
+  generate(layers);
   const fft::LaneCarrier<double>& carrier = *geometry_->carrier;
-  fields_ = Buffer<double>::uninitialised(geometry_->fields_size());
-  sum_ = Buffer<double>::uninitialised(static_cast<std::size_t>(carrier.blocks() * geometry_->transform_of_block()));
-  scratch_ = Buffer<double>::uninitialised(geometry_->scratch * static_cast<std::size_t>(backend_.arena.threads()));
+  fields_.resize(geometry_->fields_size());
+  sum_.resize(static_cast<std::size_t>(carrier.blocks() * geometry_->transform_of_block()));
+  scratch_.resize(geometry_->scratch * static_cast<std::size_t>(backend_.arena.threads()));
 }
 
 EigenstrainDisplacement::~EigenstrainDisplacement() = default;
@@ -74,26 +79,30 @@ EigenstrainResponse::Bytes EigenstrainDisplacement::bytes(const fft::Backend& ba
   const Geometry geometry(backend, box);
   const auto threads = static_cast<std::size_t>(backend.arena.threads());
   const auto sum = static_cast<std::size_t>(geometry.carrier->blocks() * geometry.transform_of_block());
-  return {Buffer<double>::padded_bytes(geometry.spectra_size(layers)),
+  return {static_cast<std::size_t>(layers) * Buffer<double>::padded_bytes(geometry.spectra_size()),
           Buffer<double>::padded_bytes(geometry.fields_size()) + Buffer<double>::padded_bytes(sum) +
               Buffer<double>::padded_bytes(geometry.scratch * threads),
           Buffer<double>::padded_bytes(geometry.generation_size(box) * threads)};
 }
 
-void EigenstrainDisplacement::generate(double poissons_ratio) {
-  const influence::Eigenstrain cuboid(grid_.dx, grid_.dy, dz_, poissons_ratio);
+/// The spectra of layers that are not there yet.
+void EigenstrainDisplacement::generate(std::int64_t layers) {
+  const influence::Eigenstrain cuboid(grid_.dx, grid_.dy, dz_, poissons_ratio_);
   const Geometry& g = *geometry_;
   const fft::LaneCarrier<double>& carrier = *g.carrier;
   const std::int64_t nx = grid_.nx, ny = grid_.ny, nodes = nx * ny;
-  spectra_ = Buffer<double>::uninitialised(g.spectra_size(layers_));
-  const std::size_t part = g.generation_size(whole_box(grid_, layers_, dz_));
+  const std::size_t part = g.generation_size(whole_box(grid_, layers, dz_));
   Buffer<double> memory = Buffer<double>::uninitialised(part * static_cast<std::size_t>(backend_.arena.threads()));
-  backend_.arena.for_chunks(layers_, 1, [&](std::int64_t begin, std::int64_t end, int slot) {
+  const std::int64_t first = this->layers();
+  std::vector<Buffer<double>> more(static_cast<std::size_t>(layers - first));
+  backend_.arena.for_chunks(layers - first, 1, [&](std::int64_t begin, std::int64_t end, int slot) {
     double* quarters = memory.data() + static_cast<std::size_t>(slot) * part;
     double* field = quarters + (static_cast<std::size_t>(simd::kSurfacePotentials * nodes) + 7) / 8 * 8;
     double* scratch = field + carrier.field_size();
     for (std::int64_t layer = begin; layer < end; ++layer) {
-      cuboid.fill_displacement(backend_.kernels.eigenstrain, (static_cast<double>(layer) + 0.5) * dz_, nx, ny,
+      Buffer<double>& spectra = more[static_cast<std::size_t>(layer)];
+      spectra = Buffer<double>::uninitialised(g.spectra_size());
+      cuboid.fill_displacement(backend_.kernels.eigenstrain, (static_cast<double>(first + layer) + 0.5) * dz_, nx, ny,
                                quarters);
       for (int column = 0; column < kColumns; ++column) {
         const int component = simd::kPlasticOrder[column];
@@ -103,14 +112,14 @@ void EigenstrainDisplacement::generate(double poissons_ratio) {
         for (std::int64_t i = 0; parity.y == fft::Parity::even && i < nx; ++i) quarter[i] *= 0.5;
         for (std::int64_t j = 0; parity.x == fft::Parity::even && j < ny; ++j) quarter[j * nx] *= 0.5;
         carrier.rows_forward(0, ny, quarter, field, scratch);
-        double* spectrum =
-            spectra_.data() + (layer * kColumns + column) * static_cast<std::int64_t>(carrier.spectrum_size());
+        double* spectrum = spectra.data() + column * static_cast<std::int64_t>(carrier.spectrum_size());
         for (std::int64_t block = 0; block < carrier.blocks(); ++block) {
           carrier.spectrum_block(block, parity.x, parity.y, field, spectrum, scratch);
         }
       }
     }
   });
+  spectra_.insert(spectra_.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
 }
 
 void EigenstrainDisplacement::displacement(const TensorView& strain, const Box& box, std::int64_t first_x,
@@ -118,10 +127,10 @@ void EigenstrainDisplacement::displacement(const TensorView& strain, const Box& 
   check_tensor(strain, "strain");
   check_box(box);
   if (result == nullptr) fail(Status::invalid_argument, "result: is null");
-  if (box.dx != grid_.dx || box.dy != grid_.dy || box.dz != dz_ || box.nz > layers_) {
+  if (box.dx != grid_.dx || box.dy != grid_.dy || box.dz != dz_ || box.nz > layers()) {
     fail(Status::invalid_argument, "a box of " + std::to_string(box.nz) + " layers of cuboids " + text(box.dx) +
                                        " x " + text(box.dy) + " x " + text(box.dz) + ": must be at most " +
-                                       std::to_string(layers_) + " of " + text(grid_.dx) + " x " + text(grid_.dy) +
+                                       std::to_string(layers()) + " of " + text(grid_.dx) + " x " + text(grid_.dy) +
                                        " x " + text(dz_));
   }
   if (first_x < 0 || first_y < 0 || first_x > grid_.nx - box.nx || first_y > grid_.ny - box.ny) {
@@ -165,7 +174,8 @@ void EigenstrainDisplacement::displacement(const TensorView& strain, const Box& 
           const influence::Parities parity = influence::surface_parities(simd::kPlasticOrder[n % kColumns]);
           backend_.kernels.eigenstrain.accumulate_rows(
               carrier.columns(), fields_.data() + n * field_size + block * stride, first_y, box.ny,
-              spectra_.data() + (from * kColumns + n) * spectrum_size + block * spectrum_of_block,
+              spectra_[static_cast<std::size_t>(from + n / kColumns)].data() + n % kColumns * spectrum_size +
+                  block * spectrum_of_block,
               parity.x == fft::Parity::odd, parity.y == fft::Parity::odd, sum_.data() + block * of_block,
               scratch_of(slot));
         }

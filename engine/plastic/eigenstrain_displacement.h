@@ -27,6 +27,9 @@ class EigenstrainDisplacement {
   EigenstrainDisplacement(const EigenstrainDisplacement&) = delete;
   EigenstrainDisplacement& operator=(const EigenstrainDisplacement&) = delete;
 
+  /// From now on for boxes of so many layers at least; those that are there stay.
+  void deepen(std::int64_t layers);
+
   /// As EigenstrainResponse::bytes.
   static EigenstrainResponse::Bytes bytes(const fft::Backend& backend, const Grid& grid, std::int64_t layers,
                                           double dz);
@@ -38,21 +41,21 @@ class EigenstrainDisplacement {
                     double* result);
 
   const Grid& grid() const { return grid_; }
-  std::int64_t layers() const { return layers_; }
+  std::int64_t layers() const { return static_cast<std::int64_t>(spectra_.size()); }
 
  private:
   struct Geometry;
-  void generate(double poissons_ratio);
+  void generate(std::int64_t layers);
 
   fft::Backend backend_;
   Grid grid_;
-  std::int64_t layers_;
   double dz_;
+  double poissons_ratio_;
   std::unique_ptr<const Geometry> geometry_;
-  Buffer<double> spectra_;  // [layer][plastic component][spectrum of the lane transform]
-  Buffer<double> fields_;   // [layer of a group][plastic component][field of the lane transform]
-  Buffer<double> sum_;      // [block] transform along x and y
-  Buffer<double> scratch_;  // one part for each thread
+  std::vector<Buffer<double>> spectra_;  // by layer: [plastic component][spectrum of the lane transform]
+  Buffer<double> fields_;                // [layer of a group][plastic component][field of the lane transform]
+  Buffer<double> sum_;                   // [block] transform along x and y
+  Buffer<double> scratch_;               // one part for each thread
 };
 
 }  // namespace brinell::plastic

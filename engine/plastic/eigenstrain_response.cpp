@@ -18,7 +18,6 @@ namespace brinell::plastic {
 
 namespace {
 
-using influence::Eigenstrain;
 using influence::Parities;
 
 /// The shortest tree of at least n values.
@@ -69,15 +68,37 @@ struct EigenstrainResponse::Geometry {
 
 EigenstrainResponse::EigenstrainResponse(const fft::Backend& backend, const Box& box, double shear_modulus,
                                          double poissons_ratio)
-    : backend_(backend), box_(box), poissons_ratio_(poissons_ratio) {
+    : backend_(backend),
+      box_(box),
+      shear_modulus_(shear_modulus),
+      potentials_(std::make_shared<influence::EigenstrainTable>(
+          influence::Eigenstrain(box.dx, box.dy, box.dz, poissons_ratio))) {
   check_box(box);
   if (!(shear_modulus > 0) || !std::isfinite(shear_modulus)) {
     fail(Status::invalid_argument, "shear_modulus = " + text(shear_modulus) + ": must be positive");
   }
-  generate(shear_modulus);
-  field_ = Buffer<double>::uninitialised(geometry_->field_size());
-  scratch_ = Buffer<double>::uninitialised(geometry_->scratch * static_cast<std::size_t>(backend_.arena.threads()));
-  given_ = Buffer<unsigned char>(static_cast<std::size_t>(simd::kPlasticComponents * box.nz));
+  generate();
+}
+
+EigenstrainResponse::EigenstrainResponse(const EigenstrainResponse& other, const Box& box)
+    : backend_(other.backend_),
+      box_(other.box_),
+      shear_modulus_(other.shear_modulus_),
+      potentials_(other.potentials_) {
+  resize(box);
+}
+
+void EigenstrainResponse::resize(const Box& box) {
+  check_box(box);
+  if (box == box_ && geometry_ != nullptr) return;
+  if (box.dx != box_.dx || box.dy != box_.dy || box.dz != box_.dz) {
+    fail(Status::invalid_argument, "a box of cuboids " + text(box.dx) + " x " + text(box.dy) + " x " + text(box.dz) +
+                                       ": must be the same as before, " + text(box_.dx) + " x " + text(box_.dy) +
+                                       " x " + text(box_.dz));
+  }
+  geometry_.reset();  // stays away if what follows fails
+  box_ = box;
+  generate();
 }
 
 EigenstrainResponse::~EigenstrainResponse() = default;
@@ -86,14 +107,17 @@ EigenstrainResponse::Bytes EigenstrainResponse::bytes(const fft::Backend& backen
   check_box(box);
   const Geometry geometry(backend, box);
   const auto threads = static_cast<std::size_t>(backend.arena.threads());
+  const influence::EigenstrainTable::Bytes potentials = influence::EigenstrainTable::bytes(
+      influence::Eigenstrain(box.dx, box.dy, box.dz, 0), backend.arena.threads(), box.nx, box.ny, box.nz);
   return {
       Buffer<double>::padded_bytes(geometry.spectra_size()),
       Buffer<double>::padded_bytes(geometry.field_size()) + Buffer<double>::padded_bytes(geometry.scratch * threads),
-      Buffer<double>::padded_bytes(geometry.generation_size(box) * threads)};
+      std::max(potentials.work, Buffer<double>::padded_bytes(geometry.generation_size(box) * threads)),
+      potentials.kept};
 }
 
-void EigenstrainResponse::generate(double shear_modulus) {
-  const Eigenstrain cuboid(box_.dx, box_.dy, box_.dz, poissons_ratio_);
+void EigenstrainResponse::generate() {
+  const influence::Eigenstrain& cuboid = potentials_->cuboid();
   auto geometry = std::make_unique<Geometry>(backend_, box_);
   const Geometry& g = *geometry;
   const fft::LaneCarrier<double>& carrier = *g.carrier;
@@ -103,11 +127,12 @@ void EigenstrainResponse::generate(double shear_modulus) {
     geometry->depth[static_cast<std::size_t>(k)] = (static_cast<double>(k) + 0.5) * box_.dz / cuboid.unit();
   }
   geometry->transform.depth = geometry->depth.data();
-  geometry->transform.poissons_ratio = poissons_ratio_;
+  geometry->transform.poissons_ratio = cuboid.poissons_ratio();
   const double points = 0.25 * static_cast<double>(carrier.padded_nx()) * static_cast<double>(carrier.padded_ny());
-  geometry->transform.own = 2 * shear_modulus / (points * static_cast<double>(g.length_z()));
+  geometry->transform.own = 2 * shear_modulus_ / (points * static_cast<double>(g.length_z()));
 
-  spectra_ = Buffer<double>(g.spectra_size());
+  potentials_->cover(backend_.arena, box_.nx, box_.ny, nz);
+  spectra_.resize(g.spectra_size());
   const std::size_t part = g.generation_size(box_);
   Buffer<double> memory = Buffer<double>::uninitialised(part * static_cast<std::size_t>(backend_.arena.threads()));
   const std::int64_t of_position = g.length_z() * simd::kSpectralValues * g.lanes;
@@ -123,7 +148,7 @@ void EigenstrainResponse::generate(double shear_modulus) {
       const double* from = spectrum + block * g.positions_y() * g.lanes;
       double* to = spectra_.data() + block * g.values_of_block() + (place * simd::kSpectralValues + value) * g.lanes;
       for (std::int64_t p = 0; p < g.positions_y(); ++p, from += g.lanes, to += of_position) {
-        std::copy_n(from, g.lanes, to);
+        for (std::int64_t lane = 0; lane < g.lanes; ++lane) to[lane] = from[lane];
       }
     }
   };
@@ -133,14 +158,14 @@ void EigenstrainResponse::generate(double shear_modulus) {
     const std::size_t behind = (static_cast<std::size_t>(simd::kImagePotentials * nodes) + 7) / 8 * 8;
     for (std::int64_t layer = begin; layer < end; ++layer) {
       if (layer < nz) {
-        cuboid.fill_kelvin(kernels, static_cast<double>(layer) * box_.dz, box_.nx, box_.ny, work);
+        potentials_->fill_kelvin(kernels, layer, box_.nx, box_.ny, work);
         for (int k = 0; k < simd::kKelvinPotentials; ++k) {
           put(work + k * nodes, influence::kelvin_parities(k), work + behind, layer, k);
         }
         continue;
       }
       const std::int64_t above = layer - nz + 1;  // 1 … 2nz − 1 layers
-      cuboid.fill_image(kernels, static_cast<double>(above) * box_.dz, box_.nx, box_.ny, work);
+      potentials_->fill_image(kernels, above, box_.nx, box_.ny, work);
       const std::int64_t place = std::abs(above - nz);
       const int first = simd::kKelvinPotentials + (above < nz ? simd::kImagePotentials : 0);
       for (int k = 0; k < simd::kImagePotentials; ++k) {
@@ -154,19 +179,25 @@ void EigenstrainResponse::generate(double shear_modulus) {
   for (std::size_t p = 0; p < leaves.size(); ++p) {
     fft::unit_root<double>(leaves[p] * (nz - 1), g.along_z.leaf_denominator(), phase[2 * p], phase[2 * p + 1]);
   }
-  const double scale =
-      -2 * shear_modulus / (8 * std::numbers::pi * (1 - poissons_ratio_) * static_cast<double>(g.length_z()));
+  const double scale = -2 * shear_modulus_ /
+                       (8 * std::numbers::pi * (1 - cuboid.poissons_ratio()) * static_cast<double>(g.length_z()));
   const auto scratch = (static_cast<std::size_t>(kernels.spectra_scratch(g.transform.along_z)) + 7) / 8 * 8;
   Buffer<double> columns =
       Buffer<double>::uninitialised(scratch * static_cast<std::size_t>(backend_.arena.threads()));
   backend_.arena.for_chunks(
       carrier.blocks() * g.positions_y(), 16, [&](std::int64_t begin, std::int64_t end, int slot) {
         for (std::int64_t p = begin; p < end; ++p) {
+          // No image is nz layers above itself: the imaginary parts of the first position.
+          std::fill_n(spectra_.data() + p * of_position + (simd::kSpectralValues - simd::kImagePotentials) * g.lanes,
+                      simd::kImagePotentials * g.lanes, 0.0);
           kernels.transform_spectra(g.transform.along_z, nz, phase.data(), scale, spectra_.data() + p * of_position,
                                     columns.data() + static_cast<std::size_t>(slot) * scratch);
         }
       });
   geometry_ = std::move(geometry);
+  field_.resize(geometry_->field_size());
+  scratch_.resize(geometry_->scratch * static_cast<std::size_t>(backend_.arena.threads()));
+  given_ = Buffer<unsigned char>(static_cast<std::size_t>(simd::kPlasticComponents * nz));
 }
 
 void EigenstrainResponse::stress(const TensorView& strain, const TensorArrays& result) {

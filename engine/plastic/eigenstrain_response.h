@@ -24,6 +24,7 @@
 
 #include "base/buffer.h"
 #include "fft/convolution.h"
+#include "influence/eigenstrain_table.h"
 #include "plastic/tensor_fields.h"
 
 namespace brinell::plastic {
@@ -43,15 +44,21 @@ class EigenstrainResponse {
  public:
   /// Generates the spectra. Throws Status::invalid_argument for what is no box or material, Status::too_large.
   EigenstrainResponse(const fft::Backend& backend, const Box& box, double shear_modulus, double poissons_ratio);
+  /// The same cuboids in another box, with the potentials near them in common: not while another thread uses either.
+  EigenstrainResponse(const EigenstrainResponse& other, const Box& box);
   ~EigenstrainResponse();
   EigenstrainResponse(const EigenstrainResponse&) = delete;
   EigenstrainResponse& operator=(const EigenstrainResponse&) = delete;
 
-  /// What it allocates and keeps: spectra, field, scratch of every thread.
+  /// Another box of the same cuboids. What does not depend on the box is kept, and memory that is large enough.
+  void resize(const Box& box);
+
+  /// What it allocates and keeps: spectra, field, scratch of every thread, potentials near the cuboid.
   struct Bytes {
     std::size_t spectra = 0;
     std::size_t work = 0;
     std::size_t generation = 0;  // more, while the spectra are generated
+    std::size_t potentials = 0;  // for boxes to come
   };
   static Bytes bytes(const fft::Backend& backend, const Box& box);
 
@@ -63,11 +70,12 @@ class EigenstrainResponse {
 
  private:
   struct Geometry;
-  void generate(double shear_modulus);
+  void generate();
 
   fft::Backend backend_;
   Box box_;
-  double poissons_ratio_;
+  double shear_modulus_;
+  std::shared_ptr<influence::EigenstrainTable> potentials_;
   std::unique_ptr<const Geometry> geometry_;
   Buffer<double> spectra_;  // [block][position in y][position in z][spectral value][lane]
   Buffer<double> field_;    // [component][layer][field of the lane transform]

@@ -134,6 +134,9 @@ PlasticSolution ElasticPlastic::reach(const contact::Load& load, contact::Observ
                                       const TractionRatio& shear) {
   const double least =
       std::min(settings_.tolerance, std::max(kLeastContact, kContactToTolerance * settings_.tolerance));
+  const auto shear_on = [&](const PlasticBody& body) {
+    return &body == bodies_[1].get() ? TractionRatio{-shear[0], -shear[1]} : shear;
+  };
   bool guessed = false;
   for_bodies([&](PlasticBody& body) { guessed = guessed || body.has_increment(); });
   double contact_tolerance = guessed ? std::max(least, kFirstContact) : least;
@@ -153,8 +156,7 @@ PlasticSolution ElasticPlastic::reach(const contact::Load& load, contact::Observ
     });
     YieldError error;
     for_bodies([&](PlasticBody& body) {
-      const TractionRatio own = &body == bodies_[1].get() ? TractionRatio{-shear[0], -shear[1]} : shear;
-      const YieldError one = body.evaluate(solver_.pressure().data(), settings_.contact_modulus, own);
+      const YieldError one = body.evaluate(solver_.pressure().data(), settings_.contact_modulus, shear_on(body));
       error.yield = std::max(error.yield, one.yield);
       error.flow = std::max(error.flow, one.flow);
     });
@@ -164,6 +166,14 @@ PlasticSolution ElasticPlastic::reach(const contact::Load& load, contact::Observ
     const bool known = !grown && std::isfinite(error.worst());
     solution.converged =
         known && error.worst() <= settings_.tolerance && contact.certificate.worst() <= settings_.tolerance;
+    if (solution.converged) {
+      for_bodies([&](PlasticBody& body) {
+        grown = body.make_room_below(contact_box(), solver_.pressure().data(), settings_.contact_modulus,
+                                     shear_on(body)) ||
+                grown;
+      });
+      solution.converged = !grown;
+    }
     if (solution.converged || solution.iterations >= kIterations) {
       solution.plastic_seconds += seconds_since(last);
       return solution;

@@ -27,7 +27,8 @@ struct Kept {
 
 PlasticBody::State moved(const PlasticBody::State& state, std::int64_t nodes_x, std::int64_t nodes_y,
                          const Grid& grid) {
-  const auto& [region, strain, increment, stress, equivalent] = state;  // all of it: another member does not compile here
+  const auto& [region, strain, increment, stress, equivalent] =
+      state;  // all of it: another member does not compile here
   if (region.empty()) return {};
   const Box& box = region.box;
   const Kept x(region.i0, box.nx, nodes_x, grid.nx), y(region.j0, box.ny, nodes_y, grid.ny);

@@ -126,16 +126,44 @@ void PlasticBody::add_displacement(double weight, double* displacement) {
   if (region_.empty() || std::none_of(strain_.begin(), strain_.end(), [](double value) { return value != 0; })) {
     return;
   }
-  if (surface_ == nullptr || surface_->layers() < region_.box.nz) {
-    surface_.reset();
+  if (surface_ == nullptr) {
     surface_ = std::make_unique<EigenstrainDisplacement>(backend_, grid_, region_.box.nz, layers_.thickness,
                                                          material_.poissons_ratio);
   }
+  surface_->deepen(region_.box.nz);
   if (!displacement_is_current_) {
     surface_->displacement(strain(), region_.box, region_.i0, region_.j0, displacement_.data());
     displacement_is_current_ = true;
   }
   for (std::size_t n = 0; n < displacement_.size(); ++n) displacement[n] += weight * displacement_[n];
+}
+
+/// The pressure above the box, and the shears that it brings along; false: there is none.
+bool PlasticBody::take_tractions(const double* pressure, double unit, const TractionRatio& shear) {
+  const Box& box = region_.box;
+  bool pressed = false;
+  for (std::int64_t j = 0; j < box.ny; ++j) {
+    const double* row = pressure + (region_.j0 + j) * grid_.nx + region_.i0;
+    for (std::int64_t i = 0; i < box.nx; ++i) {
+      pressed = pressed || row[i] > 0;
+      pressure_[static_cast<std::size_t>(j * box.nx + i)] = row[i] * unit;
+    }
+  }
+  for (std::size_t axis = 0; axis < shears_.size(); ++axis) {
+    if (shear[axis] == 0) {
+      shears_[axis] = {};
+      continue;
+    }
+    shears_[axis].resize(pressure_.size());
+    std::transform(pressure_.begin(), pressure_.end(), shears_[axis].begin(),
+                   [&](double p) { return shear[axis] * p; });
+  }
+  return pressed;
+}
+
+subsurface::Tractions PlasticBody::tractions() const {
+  const auto of = [](const Buffer<double>& field) { return field.empty() ? nullptr : field.data(); };
+  return {pressure_.data(), of(shears_[0]), of(shears_[1])};
 }
 
 /// Into trial_.
@@ -152,31 +180,14 @@ void PlasticBody::contact_stress(const double* pressure, double unit, const Trac
     request.sources = sources;
     stress_ = std::make_unique<subsurface::StressField>(backend_, request, spectra_limit_);
   }
-  bool pressed = false;
-  for (std::int64_t j = 0; j < box.ny; ++j) {
-    const double* row = pressure + (region_.j0 + j) * grid_.nx + region_.i0;
-    for (std::int64_t i = 0; i < box.nx; ++i) {
-      pressed = pressed || row[i] > 0;
-      pressure_[static_cast<std::size_t>(j * box.nx + i)] = row[i] * unit;
-    }
-  }
-  if (!pressed) {
+  if (!take_tractions(pressure, unit, shear)) {
     std::fill(trial_.begin(), trial_.end(), 0.0);
     return;
-  }
-  std::array<Buffer<double>, 2> shears;
-  subsurface::Tractions tractions{pressure_.data(), nullptr, nullptr};
-  for (std::size_t axis = 0; axis < 2; ++axis) {
-    if (shear[axis] == 0) continue;
-    shears[axis] = Buffer<double>::uninitialised(pressure_.size());
-    std::transform(pressure_.begin(), pressure_.end(), shears[axis].begin(),
-                   [&](double p) { return shear[axis] * p; });
-    tractions[1 + axis] = shears[axis].data();
   }
   const TensorArrays contact = arrays(trial_);
   subsurface::StressFields fields;
   std::copy(contact.begin(), contact.end(), fields.component.begin());
-  stress_->compute(tractions, fields);
+  stress_->compute(tractions(), fields);
 }
 
 YieldError PlasticBody::evaluate(const double* pressure, double unit, const TractionRatio& shear) {
@@ -221,15 +232,19 @@ YieldError PlasticBody::evaluate(const double* pressure, double unit, const Trac
   return error;
 }
 
+std::unique_ptr<EigenstrainResponse> PlasticBody::response(const Box& box) const {
+  if (response_ != nullptr) return std::make_unique<EigenstrainResponse>(*response_, box);
+  return std::make_unique<EigenstrainResponse>(backend_, box, shear_modulus_, material_.poissons_ratio);
+}
+
 void PlasticBody::residual_stress(const TensorArrays& result) {
   const Box& box = region_.box;
   if (std::none_of(strain_.begin(), strain_.end(), [](double value) { return value != 0; })) {
     for (double* component : result) std::fill_n(component, box.cuboids(), 0.0);
     return;
   }
-  if (response_ == nullptr) {
-    response_ = std::make_unique<EigenstrainResponse>(backend_, box, shear_modulus_, material_.poissons_ratio);
-  }
+  if (response_ == nullptr) response_ = response(box);
+  response_->resize(box);
   response_->stress(strain(), result);
 }
 
@@ -354,13 +369,11 @@ void PlasticBody::restore(const State& state) {
   stress_old_ = copy_of(state.stress);
   p_old_ = copy_of(state.equivalent);
   const bool same = region_.box == state.region.box;  // wherever it lies
-  std::unique_ptr<EigenstrainResponse> response = std::move(response_);
   std::unique_ptr<subsurface::StressField> stress = std::move(stress_);
   region_ = state.region;
   stride_ = old_.size() / kAll;
   move_to(Region(region_));
   if (!same) return;
-  response_ = std::move(response);
   stress_ = std::move(stress);
 }
 
@@ -373,15 +386,19 @@ std::size_t PlasticBody::bytes(const fft::Backend& backend, const Grid& grid, co
   request.components = subsurface::kAllComponents;
   request.sources = sources;
   const subsurface::StressPlan stress = subsurface::plan_stress(backend, request, spectra_limit);
+  request.components = {};
+  request.invariants = {subsurface::Invariant::von_mises};
+  const std::size_t below = subsurface::plan_stress(backend, request, 0).work_bytes;
   const EigenstrainResponse::Bytes response = EigenstrainResponse::bytes(backend, box);
   const EigenstrainResponse::Bytes surface =
       EigenstrainDisplacement::bytes(backend, grid, layers.count, layers.thickness);
   const std::size_t shears = static_cast<std::size_t>(sources.has(subsurface::Traction::shear_x)) +
                              static_cast<std::size_t>(sources.has(subsurface::Traction::shear_y));
   constexpr std::size_t kFields = 2 * 9 * kAll + 7;  // while the box grows, some twice; and the state to go back to
-  return stress.kept_bytes + stress.work_bytes + response.spectra + response.work + surface.spectra + surface.work +
-         std::max(response.generation, surface.generation) + kFields * Buffer<double>::padded_bytes(box.cuboids()) +
-         (2 + shears) * Buffer<double>::padded_bytes(grid.nodes());
+  return stress.kept_bytes + stress.work_bytes + below + response.spectra + response.work + response.potentials +
+         surface.spectra + surface.work + std::max(response.generation, surface.generation) +
+         kFields * Buffer<double>::padded_bytes(box.cuboids()) +
+         (3 + shears) * Buffer<double>::padded_bytes(grid.nodes());
 }
 
 }  // namespace brinell::plastic

@@ -9,8 +9,9 @@
 // plastic strain is p = p_before + |early| + |d − early|. z points into the body, whichever it is.
 //
 // The box begins at the surface and lies below part of the grid. It holds every node that is in contact, so that the
-// stress under the contact needs no others, and grows as yielding or the contact comes near its sides; what it holds
-// stays. Fields are [k][j][i] in the box; the six components are `stride` values apart.
+// stress under the contact needs no others, and all flow, with a margin of a few cuboids: the time of a pass goes
+// with its size. It grows as either comes near a side, and downwards where a solution's stress would let what lies
+// below it yield. What it holds stays. Fields are [k][j][i] in the box; the six components are `stride` values apart.
 #pragma once
 
 #include <array>
@@ -98,6 +99,9 @@ class PlasticBody {
   /// Lets it grow once flow has come near a side that is not the grid's; true if it grew.
   bool make_room_for_flow();
 
+  /// Lets it grow where a solution's stress, after evaluate(), would let cuboids below it yield; true if it grew.
+  bool make_room_below(const contact::Box& contact, const double* pressure, double unit, const TractionRatio& shear);
+
   /// Flow in the last layer of all, or below the grid's side: what lies beyond it is unknown.
   bool flow_is_cut_off() const;
 
@@ -129,6 +133,9 @@ class PlasticBody {
   const Buffer<double>& equivalent() const { return p_; }
   LargestPlasticStrain largest() const;
 
+  /// Another response of the body's cuboids, in a box of the caller's.
+  std::unique_ptr<EigenstrainResponse> response(const Box& box) const;
+
   /// Residual stress of the present strain.
   void residual_stress(const TensorArrays& result);
 
@@ -153,7 +160,10 @@ class PlasticBody {
   TensorView view(const Buffer<double>& field) const;
   TensorArrays arrays(Buffer<double>& field) const;
   void move_to(const Region& region);
+  bool take_tractions(const double* pressure, double unit, const TractionRatio& shear);
+  subsurface::Tractions tractions() const;
   void contact_stress(const double* pressure, double unit, const TractionRatio& shear);
+  std::int64_t layers_for(std::int64_t count) const;
   void combine();
   double try_stress();
   void part_flow(std::size_t begin, std::size_t end);
@@ -182,7 +192,8 @@ class PlasticBody {
   Buffer<double> p_early_;                                               // p_old + |early|
   Buffer<double> factor_;                                                // on the yield stress; empty: 1
   std::vector<double> layer_factor_;
-  Buffer<double> pressure_, displacement_;  // below the box [Pa]; on the grid [m]
+  Buffer<double> pressure_, displacement_;  // above the box [Pa]; on the grid [m]
+  std::array<Buffer<double>, 2> shears_;    // above the box [Pa]; empty: none
   bool accepted_ = false;                   // before + d has become before, and nothing has happened since
   bool residual_is_current_ = false;        // residual_ is that of the present strain
   bool displacement_is_current_ = false;

@@ -2,64 +2,82 @@
 // moves with it.
 #include <algorithm>
 #include <cmath>
-#include <tuple>
-#include <utility>
+#include <vector>
 
+#include "fft/lane_tree.h"
 #include "plastic/plastic_body.h"
+#include "simd/kernel_table.h"
 
 namespace brinell::plastic {
 
 namespace {
 
-// A box is made for a contact of this many times the half width.
-constexpr double kRoom = 1.25;
-// Half width and depth of the box that a smooth contact needs, in half widths of the contact.
-constexpr double kLateral = 1.5;
-constexpr double kDepth = 2.1;
-// Nodes in contact stay this far from the sides of the box, flow at least as many cuboids.
+// Nodes in contact and flow stay so many cuboids from the sides of the box.
 constexpr std::int64_t kShells = 2;
 // Flow of this part of the largest plastic strain does not count at a side: laws without a yield stress flow
 // everywhere.
 constexpr double kNegligible = 1e-5;
-// Where flow has reached a side, all move by this part of the box: coefficients of a box take longer to generate than
-// those of a few smaller ones would save.
-constexpr double kGrowth = 0.17;
-constexpr std::int64_t kLeastGrowth = 3;
+// A side that is reached moves by at least this part of the box. More would cost each iteration more than fewer
+// boxes, each with new coefficients, save.
+constexpr double kGrowth = 0.05;
+constexpr std::int64_t kFirstLayers = 8;
+// Below a contact yielding can begin down to so many half widths of it.
+constexpr double kDepth = 2.1;
+
+std::int64_t more(std::int64_t size) {
+  return static_cast<std::int64_t>(std::ceil(kGrowth * static_cast<double>(size)));
+}
+
+/// What transforms are fast for takes as many cuboids as it holds: eight times 2^a 3^b 5^c.
+std::int64_t roomy(std::int64_t count) {
+  std::int64_t eights = (count + 7) / 8;
+  while (!fft::is_tree_length(eights)) ++eights;
+  return 8 * eights;
+}
+
+void cleared(Buffer<double>& field, std::size_t size) {
+  field.resize(size);
+  std::fill(field.begin(), field.end(), 0.0);
+}
+
+struct Side {
+  std::int64_t first, count;
+};
+
+/// Room for begin … end − 1 and what the side holds, as even as the grid allows.
+Side side_for(std::int64_t begin, std::int64_t end, const Side& old, std::int64_t nodes) {
+  begin = std::max<std::int64_t>(0, begin);
+  end = std::min(nodes, end);
+  if (old.count > 0) {
+    begin = std::min(begin, old.first);
+    end = std::max(end, old.first + old.count);
+  }
+  const std::int64_t count = std::min(nodes, roomy(end - begin));
+  const std::int64_t first = begin - (count - (end - begin)) / 2;
+  return {std::clamp<std::int64_t>(first, 0, nodes - count), count};
+}
 
 }  // namespace
 
 bool PlasticBody::cover(const contact::Box& contact) {
   if (contact.nx == 0) return false;
-  const auto within = [](std::int64_t first, std::int64_t count, std::int64_t box_first, std::int64_t box_count,
-                         std::int64_t nodes) {
-    return box_first <= std::max<std::int64_t>(0, first - kShells) &&
-           box_first + box_count >= std::min(nodes, first + count + kShells);
+  const auto within = [](std::int64_t first, std::int64_t count, const Side& box, std::int64_t nodes) {
+    return box.first <= std::max<std::int64_t>(0, first - kShells) &&
+           box.first + box.count >= std::min(nodes, first + count + kShells);
   };
-  if (!region_.empty() && within(contact.i0, contact.nx, region_.i0, region_.box.nx, grid_.nx) &&
-      within(contact.j0, contact.ny, region_.j0, region_.box.ny, grid_.ny)) {
+  const Side x{region_.i0, region_.box.nx}, y{region_.j0, region_.box.ny};
+  if (!region_.empty() && within(contact.i0, contact.nx, x, grid_.nx) &&
+      within(contact.j0, contact.ny, y, grid_.ny)) {
     return false;
   }
-  const auto side = [](std::int64_t first, std::int64_t count, std::int64_t old_first, std::int64_t old_count,
-                       std::int64_t nodes) {
-    const double half = 0.5 * static_cast<double>(count);
-    const auto margin = static_cast<std::int64_t>(std::ceil((kRoom * kLateral - 1) * half)) + kShells;
-    std::int64_t begin = std::max<std::int64_t>(0, first - margin), end = std::min(nodes, first + count + margin);
-    if (old_count > 0) {
-      begin = std::min(begin, old_first);
-      end = std::max(end, old_first + old_count);
-    }
-    return std::pair{begin, end - begin};
+  const auto side = [](std::int64_t first, std::int64_t count, const Side& old, std::int64_t nodes) {
+    const std::int64_t margin = kShells + more(count);
+    return side_for(first - margin, first + count + margin, old, nodes);
   };
-  Region next;
-  next.box = {0, 0, 0, grid_.dx, grid_.dy, layers_.thickness};
-  std::tie(next.i0, next.box.nx) = side(contact.i0, contact.nx, region_.i0, region_.box.nx, grid_.nx);
-  std::tie(next.j0, next.box.ny) = side(contact.j0, contact.ny, region_.j0, region_.box.ny, grid_.ny);
-  const double half =
-      0.5 * std::max(static_cast<double>(contact.nx) * grid_.dx, static_cast<double>(contact.ny) * grid_.dy);
-  const double depth = std::ceil(kRoom * kDepth * half / layers_.thickness) + kShells;
-  next.box.nz = depth < static_cast<double>(layers_.count) ? static_cast<std::int64_t>(depth) : layers_.count;
+  const Side of_x = side(contact.i0, contact.nx, x, grid_.nx), of_y = side(contact.j0, contact.ny, y, grid_.ny);
+  Region next{of_x.first, of_y.first, {of_x.count, of_y.count, 0, grid_.dx, grid_.dy, layers_.thickness}};
+  next.box.nz = std::max(region_.box.nz, std::min(kFirstLayers, layers_.count));
   if (!layer_factor_.empty()) next.box.nz = layers_.count;  // a soft layer may flow by itself
-  next.box.nz = std::max(next.box.nz, region_.box.nz);
   move_to(next);
   return true;
 }
@@ -67,38 +85,85 @@ bool PlasticBody::cover(const contact::Box& contact) {
 bool PlasticBody::make_room_for_flow() {
   if (region_.empty()) return false;
   const Box& box = region_.box;
-  const auto near_side = [&](std::size_t n) {
-    const auto at = static_cast<std::int64_t>(n);
-    const std::int64_t i = at % box.nx, j = at / box.nx % box.ny, k = at / (box.nx * box.ny);
-    return (i < kShells && region_.i0 > 0) || (j < kShells && region_.j0 > 0) ||
-           (i >= box.nx - kShells && region_.i0 + box.nx < grid_.nx) ||
-           (j >= box.ny - kShells && region_.j0 + box.ny < grid_.ny) ||
-           (k >= box.nz - kShells && box.nz < layers_.count);
-  };
   const double negligible = kNegligible * *std::max_element(p_mapped_.begin(), p_mapped_.end());
-  bool reached = false;
-  for (std::size_t at = 0; at < blocks_.size() / kAll && !reached; ++at) {
-    const std::size_t first = static_cast<std::size_t>(blocks_[at]) * kBlock;
-    for (std::size_t n = first; n < std::min(first + kBlock, box.cuboids()) && !reached; ++n) {
-      reached = flows(n) && std::max(p_mapped_[n], p_[n]) > negligible && near_side(n);
+  std::array<std::int64_t, 3> first{box.nx, box.ny, box.nz}, end{};
+  for (std::size_t at = 0; at < blocks_.size() / kAll; ++at) {
+    const std::size_t begin = static_cast<std::size_t>(blocks_[at]) * kBlock;
+    for (std::size_t n = begin; n < std::min(begin + kBlock, box.cuboids()); ++n) {
+      if (!flows(n) || !(std::max(p_mapped_[n], p_[n]) > negligible)) continue;
+      const auto place = static_cast<std::int64_t>(n);
+      const std::int64_t index[3] = {place % box.nx, place / box.nx % box.ny, place / (box.nx * box.ny)};
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        first[axis] = std::min(first[axis], index[axis]);
+        end[axis] = std::max(end[axis], index[axis] + 1);
+      }
     }
   }
-  if (!reached) return false;
-  const auto more = [](std::int64_t size) {
-    return std::max(kLeastGrowth, static_cast<std::int64_t>(kGrowth * static_cast<double>(size)));
+  if (end[2] == 0) return false;
+  const auto widened = [](std::int64_t flow, std::int64_t flow_end, const Side& old, std::int64_t nodes) {
+    const std::int64_t by = kShells + more(old.count);
+    return side_for(old.first + (flow < kShells ? flow - by : 0),
+                    old.first + (flow_end > old.count - kShells ? flow_end + by : 0), old, nodes);
   };
-  Region next = region_;
-  const auto widen = [&](std::int64_t& first, std::int64_t& count, std::int64_t nodes) {
-    const std::int64_t by = more(count), end = std::min(nodes, first + count + by);
-    first = std::max<std::int64_t>(0, first - by);
-    count = end - first;
-  };
-  widen(next.i0, next.box.nx, grid_.nx);
-  widen(next.j0, next.box.ny, grid_.ny);
-  next.box.nz = std::min(layers_.count, box.nz + 2 * more(box.nz));
+  const Side x = widened(first[0], end[0], {region_.i0, box.nx}, grid_.nx);
+  const Side y = widened(first[1], end[1], {region_.j0, box.ny}, grid_.ny);
+  Region next{x.first, y.first, {x.count, y.count, box.nz, box.dx, box.dy, box.dz}};
+  if (end[2] > box.nz - kShells) next.box.nz = layers_for(end[2] + kShells + more(box.nz));
   if (next == region_) return false;
   move_to(next);
   return true;
+}
+
+/// The residual stress below the box is taken to be at most that of its last layer. Depths are sampled: at a depth
+/// the stress does not change over less than the depth.
+bool PlasticBody::make_room_below(const contact::Box& contact, const double* pressure, double unit,
+                                  const TractionRatio& shear) {
+  if (region_.empty() || contact.nx == 0) return false;
+  const Box box = region_.box;
+  const double half =
+      0.5 * std::max(static_cast<double>(contact.nx) * grid_.dx, static_cast<double>(contact.ny) * grid_.dy);
+  subsurface::StressRequest request;
+  std::vector<std::int64_t> layers;
+  for (std::int64_t k = box.nz; k < layers_.count; k += std::max<std::int64_t>(1, k / 6)) {
+    const double depth = (static_cast<double>(k) + 0.5) * layers_.thickness;
+    if (depth > kDepth * half) break;
+    layers.push_back(k);
+    request.depths.push_back(depth);
+  }
+  if (layers.empty()) return false;
+  request.grid = {box.nx, box.ny, grid_.dx, grid_.dy};
+  request.poissons_ratio = material_.poissons_ratio;
+  request.invariants = {subsurface::Invariant::von_mises};
+  request.sources = sources_of(shear);
+  subsurface::StressField stress(backend_, request);
+  take_tractions(pressure, unit, shear);
+  const auto columns = static_cast<std::size_t>(box.nx * box.ny);
+  const std::size_t last = columns * static_cast<std::size_t>(box.nz - 1);
+  Buffer<double> residual(columns);
+  simd::StressArrays of_last;
+  for (std::size_t c = 0; c < kAll; ++c) of_last.component[c] = residual_.data() + c * stride_ + last;
+  backend_.kernels.subsurface.von_mises(columns, of_last, residual.data());
+  const double yield = law_.yield_stress(kNegligible * *std::max_element(p_.begin(), p_.end()));
+  std::int64_t deepest = 0;
+  stress.compute_by_layer(tractions(), [&](const subsurface::StressLayer& layer) {
+    const double* contact_stress = layer.invariant[static_cast<std::size_t>(subsurface::Invariant::von_mises)];
+    for (std::size_t n = 0; n < columns; ++n) {
+      if (!(contact_stress[n] + residual[n] > yield)) continue;
+      deepest = layers[static_cast<std::size_t>(layer.layer)];
+      break;
+    }
+  });
+  if (deepest == 0) return false;
+  Region next = region_;
+  next.box.nz = layers_for(deepest + 1 + kShells);
+  move_to(next);
+  return true;
+}
+
+/// So many layers or some more, as the transforms like it.
+std::int64_t PlasticBody::layers_for(std::int64_t count) const {
+  while (!fft::is_tree_length(count)) ++count;
+  return std::min(count, layers_.count);
 }
 
 bool PlasticBody::flow_is_cut_off() const {
@@ -120,7 +185,6 @@ void PlasticBody::move_to(const Region& next) {
   const Region before = region_;
   const std::size_t stride_before = stride_;
   region_ = next;
-  response_.reset();
   stress_.reset();
   const Box& box = region_.box;
   stride_ = stride_of(box);
@@ -144,8 +208,8 @@ void PlasticBody::move_to(const Region& next) {
   stress_old_ = moved_field(stress_old_, kAll);
   p_old_ = moved_field(p_old_, 1);
   for (Buffer<double>* field : {&strain_, &mapped_, &residual_, &total_, &trial_, &early_})
-    *field = Buffer<double>(kAll * stride_);
-  for (Buffer<double>* field : {&p_, &p_mapped_, &p_early_, &von_mises_, &yield_}) *field = Buffer<double>(stride_);
+    cleared(*field, kAll * stride_);
+  for (Buffer<double>* field : {&p_, &p_mapped_, &p_early_, &von_mises_, &yield_}) cleared(*field, stride_);
   std::copy(old_.begin(), old_.end(), strain_.begin());
   std::copy(p_old_.begin(), p_old_.end(), p_.begin());
   std::copy(p_old_.begin(), p_old_.end(), p_mapped_.begin());

@@ -54,10 +54,7 @@ const Buffer<double>& PlasticFields::residual_stress(Which which) {
   }
   if (std::none_of(result.begin(), result.end(), [](double value) { return value != 0; })) return result;
   auto& response = response_[pair_.identical() ? 0 : static_cast<std::size_t>(which)];
-  if (response == nullptr) {
-    response = std::make_unique<plastic::EigenstrainResponse>(engine_.resources().backend, box, one.shear_modulus(),
-                                                              scene_.body(which).poissons_ratio);
-  }
+  if (response == nullptr) response = one.response(box);
   response->stress({target[0], target[1], target[2], target[3], target[4], target[5]}, target);
   return result;
 }

@@ -10,7 +10,9 @@
 #include <vector>
 
 #include "base/error.h"
+#include "influence/eigenstrain_table.h"
 #include "influence/stress.h"
+#include "parallel/arena.h"
 #include "simd/kernel_table.h"
 #include "support/mindlin_quadrature.h"
 
@@ -297,6 +299,59 @@ TEST(Eigenstrain, fills_the_same_at_every_instruction_set_with_its_parities) {
       }
     }
   }
+}
+
+/// All layers that a box needs, by the table of potentials near the cuboid.
+std::vector<double> by_table(const EigenstrainTable& table, std::int64_t nx, std::int64_t ny, std::int64_t nz) {
+  const auto& kernels = simd::kernels(simd::Isa::baseline).eigenstrain;
+  const auto kelvin = static_cast<std::size_t>(simd::kKelvinPotentials * nx * ny);
+  const auto image = static_cast<std::size_t>(simd::kImagePotentials * nx * ny);
+  std::vector<double> values(static_cast<std::size_t>(nz) * kelvin + static_cast<std::size_t>(2 * nz - 1) * image,
+                             std::numeric_limits<double>::quiet_NaN());
+  double* place = values.data();
+  for (std::int64_t k = 0; k < nz; ++k, place += kelvin) table.fill_kelvin(kernels, k, nx, ny, place);
+  for (std::int64_t k = 1; k < 2 * nz; ++k, place += image) table.fill_image(kernels, k, nx, ny, place);
+  return values;
+}
+
+TEST(EigenstrainTable, has_the_potentials_of_one_cuboid) {
+  const Eigenstrain cuboid(1, 1.25, 0.75, 0.3);
+  const std::int64_t nx = 40, ny = 5, nz = 26;  // beyond the closed forms in x and in z
+  const parallel::Arena arena(1);
+  EigenstrainTable table(cuboid);
+  table.cover(arena, nx, ny, nz);
+  const std::vector<double> found = by_table(table, nx, ny, nz);
+  std::vector<double> expected(static_cast<std::size_t>(simd::kImagePotentials * nx * ny));
+  const auto& kernels = simd::kernels(simd::Isa::baseline).eigenstrain;
+  const double* place = found.data();
+  for (std::int64_t layer = 0; layer < 3 * nz - 1; ++layer) {
+    const bool image = layer >= nz;
+    const double z = static_cast<double>(image ? layer - nz + 1 : layer) * 0.75;
+    if (image) cuboid.fill_image(kernels, z, nx, ny, expected.data());
+    if (!image) cuboid.fill_kelvin(kernels, z, nx, ny, expected.data());
+    const std::int64_t count = (image ? simd::kImagePotentials : simd::kKelvinPotentials) * nx * ny;
+    for (std::int64_t n = 0; n < count; ++n, ++place) {
+      // Sums of eight terms up to 40³ in long double, 5e-20 each, and one rounding to double.
+      ASSERT_NEAR(*place, expected[static_cast<std::size_t>(n)],
+                  3e-14 + 2e-16 * std::abs(expected[static_cast<std::size_t>(n)]))
+          << layer << ", " << n;
+    }
+  }
+}
+
+TEST(EigenstrainTable, gives_the_same_bits_in_steps_and_for_any_number_of_threads) {
+  const Eigenstrain cuboid(1, 0.8, 1.1, 0.25);
+  const parallel::Arena one(1), three(3);
+  EigenstrainTable at_once(cuboid), in_steps(cuboid);
+  at_once.cover(one, 34, 21, 12);
+  in_steps.cover(three, 5, 21, 2);
+  in_steps.cover(three, 34, 8, 10);
+  in_steps.cover(three, 34, 21, 12);
+  in_steps.cover(three, 3, 3, 3);
+  EXPECT_EQ(by_table(at_once, 34, 21, 12), by_table(in_steps, 34, 21, 12));
+  EigenstrainTable small(cuboid);
+  small.cover(three, 7, 6, 3);
+  EXPECT_EQ(by_table(at_once, 7, 6, 3), by_table(small, 7, 6, 3));
 }
 
 TEST(Eigenstrain, refuses_what_is_no_cuboid_place_or_material) {

@@ -168,6 +168,22 @@ TEST(EigenstrainDisplacement, serves_boxes_of_every_size_and_place) {
   for (const double value : nothing) EXPECT_EQ(value, 0.0);
 }
 
+TEST(EigenstrainDisplacement, deepened_gives_the_bits_of_a_new_one) {
+  const Engine engine(2);
+  const Grid grid{14, 9, 1, 1};
+  EigenstrainDisplacement response(engine.backend, grid, 1, 0.5, 0.3);
+  for (const std::int64_t layers : {3, 2, 7}) {
+    response.deepen(layers);
+    EXPECT_EQ(response.layers(), std::max<std::int64_t>(layers, 3));
+    const Box box{6, 5, layers, 1, 1, 0.5};
+    const TensorField strain = random_strain(box);
+    std::vector<double> result(grid.nodes());
+    response.displacement(strain.pointers(), box, 4, 2, result.data());
+    EXPECT_EQ(result, displacement_of(engine, grid, box, {4, 2}, strain));
+  }
+  EXPECT_THROW(response.deepen(0), Error);
+}
+
 TEST(EigenstrainDisplacement, does_not_depend_on_the_number_of_threads) {
   const tbb::global_control allow(tbb::global_control::max_allowed_parallelism, 8);
   const Grid grid{70, 50, 1, 1};

@@ -274,6 +274,25 @@ TEST(EigenstrainResponse, does_not_depend_on_the_number_of_threads) {
   }
 }
 
+TEST(EigenstrainResponse, resized_gives_the_bits_of_a_new_one) {
+  const Engine engine(3);
+  EigenstrainResponse response(engine.backend, {4, 3, 2, 1, 0.8, 1.2}, 0.5, 0.3);
+  for (const Box& box : {Box{9, 6, 5, 1, 0.8, 1.2}, Box{33, 10, 7, 1, 0.8, 1.2}, Box{33, 10, 7, 1, 0.8, 1.2},
+                         Box{8, 12, 3, 1, 0.8, 1.2}}) {
+    response.resize(box);
+    EXPECT_TRUE(response.box() == box);
+    const TensorField strain = random_strain(box);
+    TensorField stress(box, std::numeric_limits<double>::quiet_NaN());
+    response.stress(strain.pointers(), stress.pointers());
+    EXPECT_EQ(stress.memory, stress_of(engine, box, strain).memory);
+    EigenstrainResponse other(response, box);
+    other.stress(strain.pointers(), stress.pointers());
+    EXPECT_EQ(stress.memory, stress_of(engine, box, strain).memory);
+  }
+  EXPECT_THROW(response.resize({8, 12, 3, 1, 0.8, 1.3}), Error);
+  EXPECT_THROW(response.resize({8, 0, 3, 1, 0.8, 1.2}), Error);
+}
+
 TEST(EigenstrainResponse, announces_its_bytes) {
   const Engine engine;
   const auto bytes = EigenstrainResponse::bytes(engine.backend, {64, 64, 32, 1, 1, 1});

@@ -304,6 +304,20 @@ TEST(ElasticPlastic, refuses_plastic_strain_in_the_last_layer) {
   EXPECT_EQ(shallow.peak(), 0);
 }
 
+// The von Mises stress under a sphere is 0.52 of the Hertz pressure at 0.8 µm, the first box's depth, and largest,
+// 0.62, at 1.7 µm: a yield stress of 0.6 is exceeded where there is no box yet.
+TEST(ElasticPlastic, finds_yielding_below_the_box) {
+  const double radius = std::cbrt(0.75 * kForce * 105e-6 / kModulus);
+  const double hertz = 1.5 * kForce / (std::numbers::pi * radius * radius);
+  Indentation pressed(lower(PerfectPlasticity{0.6 * hertz}), kModulus, kNodes, kSpacing, {40, 0.1e-6});
+  const PlasticSolution solution = pressed.press(kForce);
+  EXPECT_TRUE(solution.converged);
+  const PlasticBody& body = *pressed.loop.body(0);
+  EXPECT_GT(body.largest().cuboids, 0);
+  EXPECT_GT(body.largest().at[2], 0.8e-6);
+  EXPECT_GT(static_cast<double>(body.region().box.nz) * 0.1e-6, 2e-6);
+}
+
 TEST(ElasticPlastic, takes_depths_that_yield_earlier) {
   Pair soft = lower(kSteel);
   soft.material[0]->hardening.depth_factor = {{2e-6, 1}, {3e-6, 0.5}, {4e-6, 0.5}, {5e-6, 1}};
