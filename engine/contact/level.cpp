@@ -24,10 +24,9 @@ constexpr double kRestartAfter = 0.3;
 // The length of the next direction is what the last step would have wanted, within these bounds; where the
 // preconditioner were the compliance's inverse it would be one.
 constexpr double kShortest = 0.3, kLongest = 1;
-// Steps longer than so many directions are taken only if the tension that they cause could displace by no more than
-// this fraction of the present error.
-constexpr double kLongestStep = 2;
-constexpr double kTensionToError = 0.2;
+// Iterations without a smaller error until tension is clipped and the displacement made anew: of a few nodes what is
+// taken from some may be the others' all.
+constexpr int kStalled = 10;
 // Iterations without a better certificate until the level is given up: round-off has been reached.
 constexpr int kPatience = 150;
 // Attempts to find where the factor that makes a pressure meet its moments is positive.
@@ -162,9 +161,10 @@ Certificate Level<Real>::estimate(const simd::ResidualSums& residual) const {
                         load_, placed_.grid);
 }
 
-/// z, preconditioned, becomes part of the next direction: returns the slope of its free part.
+/// z, preconditioned, becomes part of the next direction.
 template <class Real>
-double Level<Real>::redirect(double beta, const LinearTrend& trend_v, double scale, const LinearTrend& trend_z) {
+simd::SlopeSums Level<Real>::redirect(double beta, const LinearTrend& trend_v, double scale,
+                                      const LinearTrend& trend_z) {
   const DirectionTotals next = passes_.redirect(beta, trend_v, scale, trend_z, fields_.p, z_.data(), v_.data());
   LinearTrend shift;
   if (freedom_ != Freedom::none && next.free.one > 0) {
@@ -202,7 +202,9 @@ LevelResult Level<Real>::solve(const Load& load, double tolerance, std::int32_t 
   bool adapted = false;
   bool conjugate = false;
   bool preconditioned = true;
-  int idle = 0;
+  int idle = 0;     // iterations without a better certificate,
+  int stalled = 0;  // or without a smaller error since the last fresh convolution
+  double least_error = 0;
   double since_adapted = 0;  // nodes that entered or left since the preconditioner was adapted
   double length = kLongest;
   double best = std::numeric_limits<double>::infinity();
@@ -222,7 +224,8 @@ LevelResult Level<Real>::solve(const Load& load, double tolerance, std::int32_t 
       result.total = sums_.load.one;
       result.certificate = certificate;
       result.converged = certificate.worst() <= tolerance;
-      fresh_error = certificate.worst();
+      fresh_error = least_error = certificate.worst();
+      stalled = 0;
       ++idle;
       if (certificate.worst() < best) {
         best = certificate.worst();
@@ -233,8 +236,10 @@ LevelResult Level<Real>::solve(const Load& load, double tolerance, std::int32_t 
     } else {
       const double error = std::max({certificate.penetration, certificate.complementarity, certificate.tension});
       const bool outgrown = certificate.penetration >= 1;  // the displacement that it is relative to, by far
-      if (outgrown || idle > kPatience || error <= std::max(tolerance, kBelieved<Real> * fresh_error) ||
-          result.iterations >= max_iterations) {
+      stalled = error < least_error ? 0 : stalled + 1;
+      least_error = std::min(least_error, error);
+      if (outgrown || stalled > kStalled || idle > kPatience ||
+          error <= std::max(tolerance, kBelieved<Real> * fresh_error) || result.iterations >= max_iterations) {
         refresh(result);
         fresh = true;
         continue;
@@ -259,11 +264,12 @@ LevelResult Level<Real>::solve(const Load& load, double tolerance, std::int32_t 
     if (conjugate && residual.changed <= kRestartAfter * residual.active && curvature_before > 0) {
       beta = scale * std::max(0.0, (sums.zq - dot(trend_z, sums.q)) / curvature_before);
     }
-    double slope = redirect(beta, trend_v, scale, trend_z);
-    if (!(slope < 0) && beta > 0) slope = redirect(0, {}, scale, trend_z);
+    simd::SlopeSums slope = redirect(beta, trend_v, scale, trend_z);
+    if (!(slope.free < 0) && beta > 0) slope = redirect(0, {}, scale, trend_z);
+    const bool mostly_taken = std::fabs(slope.free) < slope.taken;
 
     double step = 0;
-    if (slope < 0 || residual.active == 0) {
+    if (slope.free < 0 || mostly_taken) {
       if constexpr (std::is_same_v<Real, float>) {
         fast_->apply(v_.data(), q_.data());
       } else {
@@ -271,8 +277,8 @@ LevelResult Level<Real>::solve(const Load& load, double tolerance, std::int32_t 
       }
       ++result.convolutions;
       const double curvature = passes_.curvature(fields_.p, v_.data(), q_.data());
-      if (curvature > 0) step = -slope / curvature;
-      if (residual.active == 0) step = 1;  // all pressure goes
+      if (curvature > 0) step = -slope.free / curvature;
+      if (mostly_taken) step = 1;
     }
     ++result.iterations;
     ++idle;

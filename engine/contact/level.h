@@ -3,8 +3,8 @@
 // A node is in contact where its pressure is more than what its gap r would let it lose: p > c r, c a part of the
 // cell's own stiffness (the active set of M. Hintermueller, K. Ito & K. Kunisch, 2002, with c small: it is asked in
 // every iteration). The direction is kept conjugate to the last one across small changes of that set (E. A. H.
-// Vollebregt, "The bound-constrained conjugate gradient method for non-negative matrices", 2014), after I. A. Polonsky
-// and L. M. Keer (1999). Each iteration costs one convolution:
+// Vollebregt, "The bound-constrained conjugate gradient method for non-negative matrices", 2014), after I. A.
+// Polonsky and L. M. Keer (1999). Each iteration costs one convolution:
 //
 //   r = gap − approach; a prescribed force makes the approach the mean gap, weighted by the
 //       pressure: nodes that are about to leave hardly count; prescribed moments make it the
@@ -13,7 +13,7 @@
 //       or its linear trend if its moments are as well
 //   w = max(β w − λ z, −p) in contact, else −p: all that a node has when it leaves
 //   w is shifted where it is free, w > −p, so that p + w meets the load
-//   q = K w,  α = −r·w / w·q over the free part
+//   q = K w,  α = −r·w / w·q over the free part, or 1 where what leaves has more work, |r·w|, than that
 //   p += α w, gap += α q
 //
 // What leaves the contact is part of the direction, so that the displacement needs no second convolution for it; and
@@ -77,7 +77,7 @@ class Level {
   bool meet_load();
   void refresh(LevelResult& result);
   PlaneSums pressure() const;
-  double redirect(double beta, const LinearTrend& trend_v, double scale, const LinearTrend& trend_z);
+  simd::SlopeSums redirect(double beta, const LinearTrend& trend_v, double scale, const LinearTrend& trend_z);
   Certificate estimate(const simd::ResidualSums& residual) const;
 
   const parallel::Arena& arena_;

@@ -44,6 +44,10 @@ simd::ResidualSums in_plane(const simd::ResidualSums& row, double) {
   return row;
 }
 
+simd::SlopeSums in_plane(const simd::SlopeSums& row, double) {
+  return row;
+}
+
 double in_plane(double row, double) {
   return row;
 }
@@ -95,6 +99,11 @@ void combine(simd::ResidualSums& total, const simd::ResidualSums& part) {
   total.changed += part.changed;
   total.complementarity += part.complementarity;
   total.depth = std::max(total.depth, part.depth);
+}
+
+void combine(simd::SlopeSums& total, const simd::SlopeSums& part) {
+  total.free += part.free;
+  total.taken += part.taken;
 }
 
 void combine(double& total, double part) {
@@ -220,11 +229,12 @@ DirectionTotals Passes<Real>::redirect(double beta, const LinearTrend& trend_v, 
 }
 
 template <class Real>
-double Passes<Real>::balance(const LinearTrend& shift, const LinearTrend& approach, const double* p, const double* g,
-                             Real* v) {
-  return over_blocks<double>([&](double& total, std::int64_t first, std::int64_t count, std::size_t block) {
+simd::SlopeSums Passes<Real>::balance(const LinearTrend& shift, const LinearTrend& approach, const double* p,
+                                      const double* g, Real* v) {
+  return over_blocks<simd::SlopeSums>([&](simd::SlopeSums& totals, std::int64_t first, std::int64_t count,
+                                          std::size_t block) {
     if (occupied_[block] == 0) return;
-    over_stretches(first, count, total, [&](std::int64_t i, std::size_t n, const Stretch& stretch) {
+    over_stretches(first, count, totals, [&](std::int64_t i, std::size_t n, const Stretch& stretch) {
       return kernels_->balance(n, stretch.of(shift), stretch.of(approach), contact_.data() + i, p + i, g + i, v + i);
     });
   });

@@ -71,8 +71,9 @@ class Passes {
   DirectionTotals redirect(double beta, const LinearTrend& trend_v, double scale, const LinearTrend& trend_z,
                            const double* p, const Real* z, Real* v);
 
-  /// Shifts its free part; returns that part's slope Σ v (g − approach).
-  double balance(const LinearTrend& shift, const LinearTrend& approach, const double* p, const double* g, Real* v);
+  /// Shifts its free part.
+  simd::SlopeSums balance(const LinearTrend& shift, const LinearTrend& approach, const double* p, const double* g,
+                          Real* v);
 
   /// Σ v q over the free part.
   double curvature(const double* p, const Real* v, const Real* q);

@@ -226,12 +226,18 @@ Solution Solver::solve_in_precision(const Load& load, double tolerance, std::int
   return solution;
 }
 
-/// A load so small that a few nodes far apart carry it is invisible to coarser grids: it is begun from rigid bodies
-/// at rest.
+/// A start far from the solution may stall: it is begun again from separated bodies. A load so small that a few nodes
+/// far apart carry it is invisible to coarser grids: it is begun from rigid bodies at rest.
 template <class Real>
 Solution Solver::solve_robustly(const Load& load, double tolerance, std::int32_t max_iterations, Observer observer) {
-  const Solution solution = solve_nested<Real>(load, tolerance, max_iterations, observer);
-  if (solution.converged || !load.moments || !has_rest()) return solution;
+  const bool started_warm = total_ > 0;
+  Solution solution = solve_nested<Real>(load, tolerance, max_iterations, observer);
+  const auto stalled = [&] { return !solution.converged && solution.iterations < max_iterations; };
+  if (stalled() && started_warm) {
+    separate();
+    solution = solve_nested<Real>(load, tolerance, max_iterations, observer).after(solution);
+  }
+  if (!stalled() || !load.moments || !has_rest()) return solution;
   const Rest rest = rest_of(load);
   std::fill(p_.begin(), p_.end(), 0.0);
   for (std::size_t k = 0; k < rest.nodes.size(); ++k) {

@@ -56,6 +56,11 @@ struct DirectionSums {
   QuadraticSums free;  // of 1 over free nodes
 };
 
+struct SlopeSums {
+  double free = 0;   // Σ v (g − approach) over free nodes
+  double taken = 0;  // Σ |v (g − approach)| over the others
+};
+
 struct RefreshSums {
   QuadraticSums load;       // of p where positive
   LinearSums gap;           // of p g where p is positive
@@ -81,9 +86,9 @@ struct ContactKernels {
   void (*redirect)(std::size_t n, Line x, double beta, Line trend_v, double scale, Line trend_z,
                    const std::uint8_t* contact, const double* p, const Real* z, Real* v, DirectionSums* sums);
 
-  /// v = max(v + shift, −p) where free. Returns Σ v (g − approach) over what is free then.
-  double (*balance)(std::size_t n, Line shift, Line approach, const std::uint8_t* contact, const double* p,
-                    const double* g, Real* v);
+  /// v = max(v + shift, −p) where free; the sums are over what is free then.
+  SlopeSums (*balance)(std::size_t n, Line shift, Line approach, const std::uint8_t* contact, const double* p,
+                       const double* g, Real* v);
 
   /// Σ v·q over free nodes.
   double (*curvature)(std::size_t n, const std::uint8_t* contact, const double* p, const Real* v, const Real* q);

@@ -306,9 +306,9 @@ TYPED_TEST(ContactKernelsOf, balance_and_curvature) {
     const auto v = at.v.copy();
     std::vector<bool> free_before(at.n);
     for (std::size_t i = 0; i < at.n; ++i) free_before[i] = is_free(at, i);
-    const double slope =
+    const SlopeSums sums =
         run.balance(at.n, kTrendZ, kApproach, at.contact.data(), at.p.data(), at.g.data(), at.v.data());
-    Sum expected_slope, expected_curvature;
+    Sum expected_slope, expected_taken, expected_curvature;
     for (std::size_t i = 0; i < at.n; ++i) {
       const double shifted = std::max(static_cast<double>(v[i]) + asked.at(kTrendZ, i), -at.p[i]);
       if (free_before[i]) {
@@ -318,12 +318,15 @@ TYPED_TEST(ContactKernelsOf, balance_and_curvature) {
       } else {
         EXPECT_EQ(at.v[i], v[i]);
       }
+      const long double work = static_cast<long double>(at.v[i]) * (at.g[i] - asked.at(kApproach, i));
+      Sum& part = is_free(at, i) ? expected_slope : expected_taken;
+      part.add(is_free(at, i) ? work : std::abs(work));
+      part.add(0);  // the rounding of the difference
       if (!is_free(at, i)) continue;
-      expected_slope.add(static_cast<long double>(at.v[i]) * (at.g[i] - asked.at(kApproach, i)));
-      expected_slope.add(0);  // the rounding of the difference
       expected_curvature.add(static_cast<long double>(at.v[i]) * at.q[i]);
     }
-    expected_slope.expect(slope, "slope");
+    expected_slope.expect(sums.free, "slope");
+    expected_taken.expect(sums.taken, "taken");
     expected_curvature.expect(run.curvature(at.n, at.contact.data(), at.p.data(), at.v.data(), at.q.data()),
                               "curvature");
   });

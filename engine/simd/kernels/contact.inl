@@ -132,19 +132,21 @@ struct ContactPasses {
     *sums = {{load, load_x}, {free, free_x, free_xx}};
   }
 
-  static double balance(std::size_t n, Line shift, Line approach, const std::uint8_t* __restrict contact,
-                        const double* __restrict p, const double* __restrict g, Real* __restrict v) {
-    double slope = 0;
-#pragma omp simd reduction(+ : slope)
+  static SlopeSums balance(std::size_t n, Line shift, Line approach, const std::uint8_t* __restrict contact,
+                           const double* __restrict p, const double* __restrict g, Real* __restrict v) {
+    double free = 0, taken = 0;
+#pragma omp simd reduction(+ : free, taken)
     for (std::size_t i = 0; i < n; ++i) {
       const double shifted = static_cast<double>(v[i]) + at(shift, i);
       const double limited = shifted > -p[i] ? shifted : -p[i];
       const Real direction = is_free(contact[i], p[i], v[i]) ? static_cast<Real>(limited) : v[i];
       v[i] = direction;
-      const double along = is_free(contact[i], p[i], direction) ? static_cast<double>(direction) : 0.0;
-      slope += along * (g[i] - at(approach, i));
+      const double work = static_cast<double>(direction) * (g[i] - at(approach, i));
+      const double one = is_free(contact[i], p[i], direction) ? 1.0 : 0.0;
+      free += one * work;
+      taken += (1.0 - one) * std::fabs(work);
     }
-    return slope;
+    return {free, taken};
   }
 
   static double curvature(std::size_t n, const std::uint8_t* __restrict contact, const double* __restrict p,
