@@ -24,6 +24,10 @@ constexpr double kRestartAfter = 0.3;
 // The length of the next direction is what the last step would have wanted, within these bounds; where the
 // preconditioner were the compliance's inverse it would be one.
 constexpr double kShortest = 0.3, kLongest = 1;
+// Steps longer than so many directions are taken only if the tension that they cause could displace by no more than
+// this fraction of the present error.
+constexpr double kLongestStep = 2;
+constexpr double kTensionToError = 0.2;
 // Iterations without a smaller error until tension is clipped and the displacement made anew: of a few nodes what is
 // taken from some may be the others' all.
 constexpr int kStalled = 10;
