@@ -15,7 +15,7 @@ namespace {
 // contact, weighted by the pressure; less may be that error alone, and go with it.
 constexpr double kEnterBeyond = 0.5;
 // A node leaves the contact when its pressure is below this fraction of what its gap would take to close by itself:
-// with a tenth of it, and with ten times, the set of nodes is found later.
+// with none of it, and with seven times as much, the set of nodes is found later.
 constexpr double kLeaveBelow = 0.07;
 // The preconditioner follows the contact when this fraction of its nodes has changed.
 constexpr double kAdaptAfter = 0.02;

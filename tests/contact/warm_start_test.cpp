@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
 #include <vector>
 
 #include "base/error.h"
@@ -52,6 +55,46 @@ TEST(WarmStart, of_the_same_target_is_certified_again) {
                                                               second.approach, Drive::force, request.load.target);
     EXPECT_NEAR(second.certificate.penetration, expected.penetration, 1e-13);
     EXPECT_NEAR(second.certificate.complementarity, expected.complementarity, 1e-13);
+  }
+}
+
+// Small grids, few nodes in contact, loads decades apart one after the other: where a solver stalls first.
+TEST(WarmStart, histories_over_many_decades_of_load_converge) {
+  const Workbench bench;
+  for (unsigned seed = 1; seed <= 100; ++seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> part(0, 1);
+    const auto nodes = [&] { return static_cast<std::int64_t>(1 + std::pow(50, part(random))); };
+    const Grid grid{nodes(), nodes(), 1, std::exp(part(random) - 0.5)};
+    const double height = std::pow(10, -3 + 4 * part(random));
+    const bool wavy = random() % 2U == 0;
+    std::vector<double> gap(grid.nodes());
+    for (std::int64_t j = 0; j < grid.ny; ++j) {
+      for (std::int64_t i = 0; i < grid.nx; ++i) {
+        const double x = grid.x(i), y = grid.y(j);
+        const double smooth = wavy ? std::sin(0.7 * x) + std::cos(0.9 * y) : 0.01 * (x * x + y * y);
+        gap[static_cast<std::size_t>(j * grid.nx + i)] = height * (smooth + 0.3 * part(random));
+      }
+    }
+    const bool periodic = random() % 3U == 0, mixed = random() % 3U == 0, beside = !periodic && random() % 3U == 0;
+    const double mean = std::accumulate(gap.begin(), gap.end(), 0.0) / static_cast<double>(gap.size());
+    Solver solver(bench.resources, grid, periodic ? Boundary::periodic : Boundary::free, gap.data(), mixed);
+    for (int step = 0; step < 4; ++step) {
+      Load load;
+      load.drive = random() % 2U == 0 ? Drive::force : Drive::approach;
+      if (load.drive == Drive::force) {
+        load.target = height * static_cast<double>(grid.nodes()) * std::pow(10, -6 + 7 * part(random));
+        load.moments = beside;
+        if (beside) load.force_x = 0.5 * (part(random) - 0.5) * static_cast<double>(grid.nx - 1);
+      } else if (periodic) {
+        load.target = mean - (mean - least(gap)) * std::pow(10, -2 * part(random));
+      } else {
+        load.target = least(gap) + height * std::pow(10, -5 + 6 * part(random));
+      }
+      const Solution solution = solve(solver, {load, 1e-8, 2000});
+      EXPECT_TRUE(solution.converged) << seed << ", step " << step << ": " << grid.nx << " x " << grid.ny << ", "
+                                      << solution.certificate.worst();
+    }
   }
 }
 
