@@ -236,9 +236,9 @@ struct ContactPasses {
 template <class Arch, class Real, bool kTilts>
 constexpr ContactKernels<Real> contact_kernels() {
   using Passes = ContactPasses<Arch, Real, kTilts>;
-  return {Passes::advance,   Passes::residual, Passes::correlate, Passes::redirect,  Passes::balance,
-          Passes::curvature, Passes::carried,  Passes::clip,      Passes::refresh,   Passes::indicator,
-          Passes::conductance, Passes::weigh,  Passes::relax};
+  return {Passes::advance,     Passes::residual, Passes::correlate, Passes::redirect, Passes::balance,
+          Passes::curvature,   Passes::carried,  Passes::clip,      Passes::refresh,  Passes::indicator,
+          Passes::conductance, Passes::weigh,    Passes::relax};
 }
 
 }  // namespace
