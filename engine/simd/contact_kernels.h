@@ -12,7 +12,7 @@
 
 namespace brinell::simd {
 
-/// Nodes of a block at most, where the bodies may tilt.
+/// Nodes of a block at most.
 constexpr std::size_t kLongestStretch = 512;
 
 /// value + slope·i at node i of the block; the slope is read where the bodies may tilt.

@@ -30,6 +30,21 @@ struct ContactPasses {
     }
   }
 
+  /// The contact of a block as numbers: loops that mix bytes with doubles are compiled to several times the work.
+  struct Membership {
+    alignas(64) double on[kLongestStretch];
+
+    Membership() {
+    }  // NOLINT(modernize-use-equals-default,cppcoreguidelines-pro-type-member-init): written before read
+    Membership(std::size_t n,
+               const std::uint8_t* __restrict contact) {  // NOLINT(cppcoreguidelines-pro-type-member-init)
+      for (std::size_t i = 0; i < n; ++i) on[i] = static_cast<double>(static_cast<int>(contact[i]));
+    }
+    void write(std::size_t n, std::uint8_t* __restrict contact) const {
+      for (std::size_t i = 0; i < n; ++i) contact[i] = static_cast<std::uint8_t>(static_cast<int>(on[i]));
+    }
+  };
+
   static void advance(std::size_t n, Line x, double step, double* __restrict p, const Real* __restrict v,
                       double* __restrict g, const Real* __restrict q, AdvanceSums* sums) {
     double load = 0, load_x = 0, load_xx = 0, gap = 0, gap_x = 0, min_pressure = 0;
@@ -57,22 +72,24 @@ struct ContactPasses {
                        const double* __restrict g, std::uint8_t* __restrict contact, Real* __restrict z,
                        ResidualSums* sums) {
     double active = 0, occupied = 0, changed = 0, complementarity = 0, deepest = 0;
+    const Membership before(n, contact);
+    Membership now;
 #pragma omp simd reduction(+ : active, occupied, changed, complementarity) reduction(max : deepest)
     for (std::size_t i = 0; i < n; ++i) {
       const double r = g[i] - at(approach, i);
       const double pressure = p[i];
       const double wide = r + (pressure > 0 ? 0.0 : noise);
       const double on = pressure > stiffness * wide ? 1.0 : 0.0;
-      const double before = contact[i] != 0 ? 1.0 : 0.0;
-      contact[i] = static_cast<std::uint8_t>(on);
+      now.on[i] = on;
       active += on;
       occupied += pressure != 0 ? 1.0 : on;
-      changed += std::fabs(on - before);
+      changed += std::fabs(on - before.on[i]);
       complementarity += std::fabs(pressure * r);
       const double depth = -r;
       deepest = depth > deepest ? depth : deepest;
       z[i] = static_cast<Real>(on * r);
     }
+    now.write(n, contact);
     *sums = {active, occupied, changed, complementarity, deepest};
   }
 
@@ -80,9 +97,10 @@ struct ContactPasses {
                         const Real* __restrict v, const Real* __restrict q, CorrelationSums* sums) {
     double active = 0, active_x = 0, active_xx = 0, sz = 0, sz_x = 0, sq = 0, sq_x = 0, sv = 0, sv_x = 0, zq = 0,
            vq = 0;
+    const Membership members(n, contact);
 #pragma omp simd reduction(+ : active, active_x, active_xx, sz, sz_x, sq, sq_x, sv, sv_x, zq, vq)
     for (std::size_t i = 0; i < n; ++i) {
-      const double on = contact[i] != 0 ? 1.0 : 0.0;
+      const double on = members.on[i];
       const double zi = on * static_cast<double>(z[i]);
       const double vi = on * static_cast<double>(v[i]);
       const double qi = static_cast<double>(q[i]);
@@ -105,23 +123,24 @@ struct ContactPasses {
   }
 
   /// Whether the direction leaves a node in contact some of its pressure, in the precision of the direction.
-  static bool is_free(std::uint8_t contact, double p, Real v) {
-    return static_cast<int>(contact != 0) & static_cast<int>(v > static_cast<Real>(-p));
+  static double is_free(double on, double p, Real v) {
+    return v > static_cast<Real>(-p) ? on : 0.0;
   }
 
   static void redirect(std::size_t n, Line x, double beta, Line trend_v, double scale, Line trend_z,
                        const std::uint8_t* __restrict contact, const double* __restrict p, const Real* __restrict z,
                        Real* __restrict v, DirectionSums* sums) {
     double load = 0, load_x = 0, free = 0, free_x = 0, free_xx = 0;
+    const Membership members(n, contact);
 #pragma omp simd reduction(+ : load, load_x, free, free_x, free_xx)
     for (std::size_t i = 0; i < n; ++i) {
       const double along =
           beta * (static_cast<double>(v[i]) - at(trend_v, i)) - scale * (static_cast<double>(z[i]) - at(trend_z, i));
-      const double wanted = contact[i] != 0 ? along : -p[i];
+      const double wanted = members.on[i] > 0 ? along : -p[i];
       const double direction = wanted > -p[i] ? wanted : -p[i];
       v[i] = static_cast<Real>(direction);
       load += p[i] + direction;
-      const double one = is_free(contact[i], p[i], v[i]) ? 1.0 : 0.0;
+      const double one = is_free(members.on[i], p[i], v[i]);
       free += one;
       if constexpr (kTilts) {
         load_x += (p[i] + direction) * at(x, i);
@@ -135,14 +154,15 @@ struct ContactPasses {
   static SlopeSums balance(std::size_t n, Line shift, Line approach, const std::uint8_t* __restrict contact,
                            const double* __restrict p, const double* __restrict g, Real* __restrict v) {
     double free = 0, taken = 0;
+    const Membership members(n, contact);
 #pragma omp simd reduction(+ : free, taken)
     for (std::size_t i = 0; i < n; ++i) {
       const double shifted = static_cast<double>(v[i]) + at(shift, i);
       const double limited = shifted > -p[i] ? shifted : -p[i];
-      const Real direction = is_free(contact[i], p[i], v[i]) ? static_cast<Real>(limited) : v[i];
+      const Real direction = is_free(members.on[i], p[i], v[i]) > 0 ? static_cast<Real>(limited) : v[i];
       v[i] = direction;
       const double work = static_cast<double>(direction) * (g[i] - at(approach, i));
-      const double one = is_free(contact[i], p[i], direction) ? 1.0 : 0.0;
+      const double one = is_free(members.on[i], p[i], direction);
       free += one * work;
       taken += (1.0 - one) * std::fabs(work);
     }
@@ -152,9 +172,10 @@ struct ContactPasses {
   static double curvature(std::size_t n, const std::uint8_t* __restrict contact, const double* __restrict p,
                           const Real* __restrict v, const Real* __restrict q) {
     double sum = 0;
+    const Membership members(n, contact);
 #pragma omp simd reduction(+ : sum)
     for (std::size_t i = 0; i < n; ++i) {
-      const double along = is_free(contact[i], p[i], v[i]) ? static_cast<double>(v[i]) : 0.0;
+      const double along = is_free(members.on[i], p[i], v[i]) * static_cast<double>(v[i]);
       sum += along * static_cast<double>(q[i]);
     }
     return sum;
@@ -163,10 +184,11 @@ struct ContactPasses {
   static QuadraticSums carried(std::size_t n, Line x, Line factor, const std::uint8_t* __restrict contact,
                                const double* __restrict p) {
     double load = 0, load_x = 0, load_xx = 0;
+    const Membership members(n, contact);
 #pragma omp simd reduction(+ : load, load_x, load_xx)
     for (std::size_t i = 0; i < n; ++i) {
       const double pressure = p[i] > 0 ? p[i] : 0.0;
-      const double in_contact = contact[i] != 0 ? pressure : 0.0;
+      const double in_contact = members.on[i] * pressure;
       const double carried = at(factor, i) > 0 ? in_contact : 0.0;
       load += carried;
       if constexpr (kTilts) {
