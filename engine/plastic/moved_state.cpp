@@ -27,8 +27,8 @@ struct Kept {
 
 PlasticBody::State moved(const PlasticBody::State& state, std::int64_t nodes_x, std::int64_t nodes_y,
                          const Grid& grid) {
-  const auto& [region, strain, increment, stress, equivalent] =
-      state;  // all of it: another member does not compile here
+  // All of it: another member does not compile here.
+  const auto& [region, strain, increment, stress, equivalent] = state;
   if (region.empty()) return {};
   const Box& box = region.box;
   const Kept x(region.i0, box.nx, nodes_x, grid.nx), y(region.j0, box.ny, nodes_y, grid.ny);
@@ -45,24 +45,11 @@ PlasticBody::State moved(const PlasticBody::State& state, std::int64_t nodes_x, 
   PlasticBody::State result;
   if (x.count() == 0 || y.count() == 0) return result;
   result.region = {x.first, y.first, {x.count(), y.count(), box.nz, box.dx, box.dy, box.dz}};
-  const std::size_t from_stride = PlasticBody::stride_of(box);
-  const std::size_t to_stride = PlasticBody::stride_of(result.region.box);
-  const auto kept = [&](const Buffer<double>& field) {
-    const std::size_t components = field.size() / from_stride;
-    Buffer<double> values(components * to_stride);
-    for (std::size_t c = 0; c < components; ++c) {
-      for (std::int64_t row = 0; row < box.nz * y.count(); ++row) {
-        const std::int64_t k = row / y.count(), j = y.begin + row % y.count();
-        std::copy_n(field.data() + c * from_stride + static_cast<std::size_t>((k * box.ny + j) * box.nx + x.begin),
-                    x.count(), values.data() + c * to_stride + static_cast<std::size_t>(row * x.count()));
-      }
-    }
-    return values;
-  };
-  result.strain = kept(strain);
-  result.increment = kept(increment);
-  result.stress = kept(stress);
-  result.equivalent = kept(equivalent);
+  const Region whole{region.i0 + nodes_x, region.j0 + nodes_y, box};
+  result.strain = placed_in(result.region, whole, strain, 6);
+  result.increment = placed_in(result.region, whole, increment, 6);
+  result.stress = placed_in(result.region, whole, stress, 6);
+  result.equivalent = placed_in(result.region, whole, equivalent, 1);
   return result;
 }
 

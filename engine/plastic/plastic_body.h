@@ -54,6 +54,10 @@ struct Region {
   friend bool operator==(const Region&, const Region&) = default;
 };
 
+/// A field of `before` in the box `next`: where they overlap, zero elsewhere.
+Buffer<double> placed_in(const Region& next, const Region& before, const Buffer<double>& field,
+                         std::size_t components);
+
 /// How far a state is from a solution, relative to the yield stress of each cuboid.
 struct YieldError {
   double yield = 0;  // excess of the von Mises stress; where there is flow, its distance from the yield stress

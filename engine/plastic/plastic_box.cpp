@@ -59,6 +59,28 @@ Side side_for(std::int64_t begin, std::int64_t end, const Side& old, std::int64_
 
 }  // namespace
 
+Buffer<double> placed_in(const Region& next, const Region& before, const Buffer<double>& field,
+                         std::size_t components) {
+  const std::size_t from_stride = PlasticBody::stride_of(before.box), to_stride = PlasticBody::stride_of(next.box);
+  Buffer<double> result(components * to_stride);
+  const std::int64_t i0 = std::max(before.i0, next.i0), j0 = std::max(before.j0, next.j0);
+  const std::int64_t i1 = std::min(before.i0 + before.box.nx, next.i0 + next.box.nx);
+  const std::int64_t j1 = std::min(before.j0 + before.box.ny, next.j0 + next.box.ny);
+  if (i1 <= i0) return result;
+  const auto at = [&](const Region& region, std::int64_t j, std::int64_t k) {
+    return static_cast<std::size_t>((k * region.box.ny + j - region.j0) * region.box.nx + i0 - region.i0);
+  };
+  for (std::size_t c = 0; c < components; ++c) {
+    for (std::int64_t k = 0; k < std::min(before.box.nz, next.box.nz); ++k) {
+      for (std::int64_t j = j0; j < j1; ++j) {
+        std::copy_n(field.data() + c * from_stride + at(before, j, k), i1 - i0,
+                    result.data() + c * to_stride + at(next, j, k));
+      }
+    }
+  }
+  return result;
+}
+
 bool PlasticBody::cover(const contact::Box& contact) {
   if (contact.nx == 0) return false;
   const auto within = [](std::int64_t first, std::int64_t count, const Side& box, std::int64_t nodes) {
@@ -183,30 +205,14 @@ bool PlasticBody::flow_is_cut_off() const {
 /// Copies what is known into a box that holds the present one.
 void PlasticBody::move_to(const Region& next) {
   const Region before = region_;
-  const std::size_t stride_before = stride_;
   region_ = next;
   stress_.reset();
   const Box& box = region_.box;
   stride_ = stride_of(box);
-  const auto moved_field = [&](const Buffer<double>& field, std::size_t components) {
-    Buffer<double> result(components * stride_);
-    if (before.empty()) return result;
-    for (std::size_t c = 0; c < components; ++c) {
-      for (std::int64_t k = 0; k < before.box.nz; ++k) {
-        for (std::int64_t j = 0; j < before.box.ny; ++j) {
-          const std::int64_t to = (k * box.ny + j + before.j0 - region_.j0) * box.nx + before.i0 - region_.i0;
-          std::copy_n(
-              field.data() + c * stride_before + static_cast<std::size_t>((k * before.box.ny + j) * before.box.nx),
-              before.box.nx, result.data() + c * stride_ + static_cast<std::size_t>(to));
-        }
-      }
-    }
-    return result;
-  };
-  old_ = moved_field(old_, kAll);
-  d_ = moved_field(d_, kAll);
-  stress_old_ = moved_field(stress_old_, kAll);
-  p_old_ = moved_field(p_old_, 1);
+  old_ = placed_in(region_, before, old_, kAll);
+  d_ = placed_in(region_, before, d_, kAll);
+  stress_old_ = placed_in(region_, before, stress_old_, kAll);
+  p_old_ = placed_in(region_, before, p_old_, 1);
   for (Buffer<double>* field : {&strain_, &mapped_, &residual_, &total_, &trial_, &early_})
     cleared(*field, kAll * stride_);
   for (Buffer<double>* field : {&p_, &p_mapped_, &p_early_, &von_mises_, &yield_}) cleared(*field, stride_);
