@@ -4,6 +4,7 @@
 
 #include <brinell.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static int check_failures;
@@ -113,6 +114,45 @@ static inline brn_increment increment_of(brn_run *run, int32_t index) {
   brn_increment_init(&result);
   CHECK_STATUS(BRN_OK, brn_run_get_increment(run, index, &result));
   return result;
+}
+
+static inline void add(brn_scene *scene, brn_step step) {
+  CHECK_STATUS(BRN_OK, brn_scene_add_step(scene, &step));
+}
+
+static inline brn_hardening linear_hardening(double yield_stress) {
+  brn_hardening hardening;
+  brn_hardening_init(&hardening);
+  hardening.law = BRN_HARDENING_LINEAR;
+  hardening.yield_stress = yield_stress;
+  hardening.hardening_modulus = 5e9;
+  return hardening;
+}
+
+static inline void read_field(brn_run *run, int32_t field, double *values, size_t expected) {
+  size_t count = 0;
+  CHECK_STATUS(BRN_OK, brn_run_get_field(run, field, values, expected, &count));
+  CHECK(count == expected);
+}
+
+/* To be freed. */
+static inline double *field_of(brn_run *run, int32_t field, size_t expected) {
+  size_t count = 0;
+  double *values = malloc((expected + 1) * sizeof *values);
+  CHECK_STATUS(BRN_OK, brn_run_get_field(run, field, NULL, 0, &count));
+  CHECK(count == expected);
+  read_field(run, field, values, expected);
+  return values;
+}
+
+static inline double largest(const double *values, size_t count) {
+  double most = 0;
+  size_t k;
+  for (k = 0; k < count; ++k) {
+    const double size = values[k] < 0 ? -values[k] : values[k];
+    most = size > most ? size : most;
+  }
+  return most;
 }
 
 #endif

@@ -17,25 +17,6 @@ static brn_step moving(double force, double i, double j) {
   return step;
 }
 
-static void add(brn_scene *scene, brn_step step) {
-  CHECK_STATUS(BRN_OK, brn_scene_add_step(scene, &step));
-}
-
-static void field_of(brn_run *run, int32_t field, double *values) {
-  size_t count = 0;
-  CHECK_STATUS(BRN_OK, brn_run_get_field(run, field, values, nodes, &count));
-  CHECK(count == nodes);
-}
-
-static brn_hardening linear_hardening(double yield_stress) {
-  brn_hardening hardening;
-  brn_hardening_init(&hardening);
-  hardening.law = BRN_HARDENING_LINEAR;
-  hardening.yield_stress = yield_stress;
-  hardening.hardening_modulus = 5e9;
-  return hardening;
-}
-
 enum { ELASTIC = -1 };
 
 /* The sphere and 1 N at the centre to begin with; one body may harden, BRN_LOWER or BRN_UPPER. */
@@ -99,8 +80,8 @@ static void a_run_resumes_around_its_moves(int32_t hardens) {
   int done, k, cancels;
   CHECK_STATUS(BRN_OK, brn_run_execute(run, NULL, NULL));
   whole = increment_of(run, increments - 1);
-  field_of(run, BRN_FIELD_PRESSURE, expected[0]);
-  field_of(run, BRN_FIELD_GAP, expected[1]);
+  read_field(run, BRN_FIELD_PRESSURE, expected[0], nodes);
+  read_field(run, BRN_FIELD_GAP, expected[1], nodes);
   brn_run_destroy(run);
   add(different, moving(0, 1, 0));
   for (done = 1; done < increments; ++done) {
@@ -109,12 +90,12 @@ static void a_run_resumes_around_its_moves(int32_t hardens) {
       unsigned char *data;
       run = start(engine, scene);
       for (k = 0; k < done; ++k) CHECK_STATUS(BRN_OK, brn_run_advance(run, NULL, NULL));
-      field_of(run, BRN_FIELD_PRESSURE, before[0]);
-      field_of(run, BRN_FIELD_GAP, before[1]);
+      read_field(run, BRN_FIELD_PRESSURE, before[0], nodes);
+      read_field(run, BRN_FIELD_GAP, before[1], nodes);
       if (cancels && done != 3) { /* the one without force asks nobody */
         CHECK_STATUS(BRN_CANCELLED, brn_run_advance(run, stop, NULL));
-        field_of(run, BRN_FIELD_PRESSURE, found[0]);
-        field_of(run, BRN_FIELD_GAP, found[1]);
+        read_field(run, BRN_FIELD_PRESSURE, found[0], nodes);
+        read_field(run, BRN_FIELD_GAP, found[1], nodes);
         CHECK(memcmp(before, found, sizeof before) == 0);
       }
       CHECK_STATUS(BRN_OK, brn_run_save(run, NULL, 0, &size));
@@ -125,14 +106,14 @@ static void a_run_resumes_around_its_moves(int32_t hardens) {
         brn_run_destroy(run);
         CHECK_STATUS(BRN_DAMAGED_DATA, brn_run_load(other, different, data, size, &run));
         CHECK_STATUS(BRN_OK, brn_run_load(other, scene, data, size, &run));
-        field_of(run, BRN_FIELD_GAP, found[1]);
+        read_field(run, BRN_FIELD_GAP, found[1], nodes);
         CHECK(memcmp(before[1], found[1], sizeof found[1]) == 0);
         CHECK_STATUS(BRN_OK, brn_run_execute(run, NULL, NULL));
       }
       free(data);
       resumed = increment_of(run, increments - 1);
-      field_of(run, BRN_FIELD_PRESSURE, found[0]);
-      field_of(run, BRN_FIELD_GAP, found[1]);
+      read_field(run, BRN_FIELD_PRESSURE, found[0], nodes);
+      read_field(run, BRN_FIELD_GAP, found[1], nodes);
       CHECK(memcmp(expected, found, sizeof expected) == 0);
       CHECK(whole.approach == resumed.approach && whole.first_touch == resumed.first_touch);
       CHECK(whole.plastic_nodes == resumed.plastic_nodes && whole.iterations == resumed.iterations);
@@ -169,7 +150,7 @@ static brn_scene *moving_scene(int32_t boundary, double i) {
 static void gap_of(brn_scene *scene, double *gap) {
   brn_engine *engine = plain_engine(1);
   brn_run *run = start(engine, scene);
-  field_of(run, BRN_FIELD_UNDEFORMED_GAP, gap);
+  read_field(run, BRN_FIELD_UNDEFORMED_GAP, gap, nodes);
   brn_run_destroy(run);
   brn_scene_destroy(scene);
   brn_engine_destroy(engine);

@@ -8,15 +8,6 @@ enum { n = 24, nodes = n * n, layers = 14, cuboids = nodes * layers, increments 
 
 static const double tolerance = 1e-7;
 
-static brn_hardening linear_hardening(double yield_stress) {
-  brn_hardening hardening;
-  brn_hardening_init(&hardening);
-  hardening.law = BRN_HARDENING_LINEAR;
-  hardening.yield_stress = yield_stress;
-  hardening.hardening_modulus = 5e9;
-  return hardening;
-}
-
 static brn_scene *plastic_scene(double yield_stress) {
   static const int32_t fields[] = {BRN_FIELD_STRESS, BRN_FIELD_VON_MISES, BRN_FIELD_PLASTIC_STRAIN,
                                    BRN_FIELD_EQUIVALENT_PLASTIC_STRAIN, BRN_FIELD_RESIDUAL_STRESS};
@@ -40,29 +31,6 @@ static brn_scene *plastic_scene(double yield_stress) {
   return scene;
 }
 
-static double *field(brn_run *run, int32_t which, size_t expected) {
-  size_t count = 0;
-  double *values = malloc((expected + 1) * sizeof *values);
-  CHECK_STATUS(BRN_OK, brn_run_get_field(run, which, NULL, 0, &count));
-  CHECK(count == expected);
-  CHECK_STATUS(BRN_OK, brn_run_get_field(run, which, values, expected, &count));
-  return values;
-}
-
-static brn_increment increment(brn_run *run, int32_t index) {
-  brn_increment value;
-  brn_increment_init(&value);
-  CHECK_STATUS(BRN_OK, brn_run_get_increment(run, index, &value));
-  return value;
-}
-
-static double largest(const double *values, size_t count) {
-  double most = 0;
-  size_t k;
-  for (k = 0; k < count; ++k) most = fabs(values[k]) > most ? fabs(values[k]) : most;
-  return most;
-}
-
 static void a_sphere_leaves_an_imprint(void) {
   brn_engine *engine = plain_engine(2);
   brn_scene *scene = plastic_scene(800e6);
@@ -76,13 +44,13 @@ static void a_sphere_leaves_an_imprint(void) {
   CHECK(brn_run_stage_name(run, 4) == NULL);
   CHECK_STATUS(BRN_OK, brn_run_execute(run, NULL, NULL));
   for (step = 0; step < increments; ++step) {
-    const brn_increment one = increment(run, step);
+    const brn_increment one = increment_of(run, step);
     CHECK(one.converged == 1 && one.yield <= tolerance && one.yield >= 0 && one.substeps == 1);
     CHECK(one.increment_error >= 0 &&
           (one.increment_error > 0) == (step < increments - 2)); /* unloading is elastic */
   }
-  loaded = increment(run, increments - 3);
-  apart = increment(run, increments - 1);
+  loaded = increment_of(run, increments - 3);
+  apart = increment_of(run, increments - 1);
   /* Less than the yield stress of the largest plastic strain; the largest of all is between nodes. */
   CHECK(loaded.max_von_mises < 1.02 * (800e6 + 5e9 * loaded.max_equivalent_plastic_strain));
   CHECK(loaded.plastic_nodes > 100 && loaded.max_equivalent_plastic_strain > 1e-4);
@@ -92,11 +60,11 @@ static void a_sphere_leaves_an_imprint(void) {
   CHECK(apart.normal_force == 0 && apart.contact_nodes == 0 && apart.approach > 0);
 
   /* Without pressure the total stress is the residual one. */
-  stress = field(run, BRN_FIELD_STRESS, 6 * cuboids);
-  residual = field(run, BRN_FIELD_RESIDUAL_STRESS, 6 * cuboids);
-  strain = field(run, BRN_FIELD_PLASTIC_STRAIN, 6 * cuboids);
-  equivalent = field(run, BRN_FIELD_EQUIVALENT_PLASTIC_STRAIN, cuboids);
-  displacement = field(run, BRN_FIELD_RESIDUAL_DISPLACEMENT, nodes);
+  stress = field_of(run, BRN_FIELD_STRESS, 6 * cuboids);
+  residual = field_of(run, BRN_FIELD_RESIDUAL_STRESS, 6 * cuboids);
+  strain = field_of(run, BRN_FIELD_PLASTIC_STRAIN, 6 * cuboids);
+  equivalent = field_of(run, BRN_FIELD_EQUIVALENT_PLASTIC_STRAIN, cuboids);
+  displacement = field_of(run, BRN_FIELD_RESIDUAL_DISPLACEMENT, nodes);
   CHECK(memcmp(stress, residual, 6 * cuboids * sizeof *stress) == 0);
   CHECK(largest(stress, 6 * cuboids) > 1e7);
   CHECK(largest(equivalent, cuboids) == apart.max_equivalent_plastic_strain);
@@ -130,7 +98,7 @@ static void increments_are_divided_where_that_is_asked_for(void) {
   double as_is, allowed;
   CHECK_STATUS(BRN_OK, brn_run_advance(run, NULL, NULL));
   CHECK_STATUS(BRN_OK, brn_run_advance(run, NULL, NULL));
-  as_is = increment(run, 1).increment_error;
+  as_is = increment_of(run, 1).increment_error;
   allowed = 0.2 * as_is;
   brn_run_destroy(run);
   brn_solver_init(&solver);
@@ -140,8 +108,8 @@ static void increments_are_divided_where_that_is_asked_for(void) {
   run = start(engine, scene);
   CHECK_STATUS(BRN_OK, brn_run_advance(run, NULL, NULL));
   CHECK_STATUS(BRN_OK, brn_run_advance(run, NULL, NULL));
-  CHECK(increment(run, 1).substeps > 1);
-  CHECK(increment(run, 1).increment_error > 0 && increment(run, 1).increment_error <= allowed);
+  CHECK(increment_of(run, 1).substeps > 1);
+  CHECK(increment_of(run, 1).increment_error > 0 && increment_of(run, 1).increment_error <= allowed);
   brn_run_destroy(run);
   brn_scene_destroy(scene);
   brn_engine_destroy(engine);
@@ -163,7 +131,7 @@ static void below_yield_it_is_the_elastic_run(void) {
   CHECK_STATUS(BRN_OK, brn_run_create(engine, elastic, &runs[1]));
   for (k = 0; k < 2; ++k) CHECK_STATUS(BRN_OK, brn_run_execute(runs[k], NULL, NULL));
   for (k = 0; k < increments; ++k) {
-    const brn_increment a = increment(runs[0], k), b = increment(runs[1], k);
+    const brn_increment a = increment_of(runs[0], k), b = increment_of(runs[1], k);
     CHECK(fabs(a.approach - b.approach) <= tolerance * fabs(b.approach));
     CHECK(fabs(a.max_pressure - b.max_pressure) <= 1e-4 * b.max_pressure);
     /* Interpolated alike from the same pressure but for the tolerance. */
@@ -186,8 +154,8 @@ static void a_history_resumes_to_the_same_bits(void) {
   int32_t done;
   CHECK_STATUS(BRN_OK, brn_run_create(engine, scene, &whole));
   CHECK_STATUS(BRN_OK, brn_run_execute(whole, NULL, NULL));
-  expected[0] = field(whole, BRN_FIELD_GAP, nodes);
-  expected[1] = field(whole, BRN_FIELD_EQUIVALENT_PLASTIC_STRAIN, cuboids);
+  expected[0] = field_of(whole, BRN_FIELD_GAP, nodes);
+  expected[1] = field_of(whole, BRN_FIELD_EQUIVALENT_PLASTIC_STRAIN, cuboids);
   for (done = 0; done <= increments; ++done) {
     size_t size = 0;
     unsigned char *data;
@@ -207,12 +175,12 @@ static void a_history_resumes_to_the_same_bits(void) {
     CHECK_STATUS(BRN_OK, brn_run_load(other, scene, data, size, &run));
     free(data);
     CHECK_STATUS(BRN_OK, brn_run_execute(run, NULL, NULL));
-    found[0] = field(run, BRN_FIELD_GAP, nodes);
-    found[1] = field(run, BRN_FIELD_EQUIVALENT_PLASTIC_STRAIN, cuboids);
+    found[0] = field_of(run, BRN_FIELD_GAP, nodes);
+    found[1] = field_of(run, BRN_FIELD_EQUIVALENT_PLASTIC_STRAIN, cuboids);
     CHECK(memcmp(expected[0], found[0], nodes * sizeof(double)) == 0);
     CHECK(memcmp(expected[1], found[1], cuboids * sizeof(double)) == 0);
     for (k = 0; k < increments; ++k) {
-      const brn_increment a = increment(whole, k), b = increment(run, k);
+      const brn_increment a = increment_of(whole, k), b = increment_of(run, k);
       CHECK(a.approach == b.approach && a.yield == b.yield && a.plastic_nodes == b.plastic_nodes);
       CHECK(a.max_von_mises == b.max_von_mises);
     }
@@ -264,8 +232,8 @@ static void sliding_bodies_yield(void) {
     CHECK(last[k].yield <= tolerance);
     if (k == 1) { /* no cuboid's stress is above its yield stress */
       size_t at;
-      mises = field(run, BRN_FIELD_VON_MISES, cuboids);
-      equivalent = field(run, BRN_FIELD_EQUIVALENT_PLASTIC_STRAIN, cuboids);
+      mises = field_of(run, BRN_FIELD_VON_MISES, cuboids);
+      equivalent = field_of(run, BRN_FIELD_EQUIVALENT_PLASTIC_STRAIN, cuboids);
       for (at = 0; at < cuboids; ++at) CHECK(mises[at] <= (900e6 + 5e9 * equivalent[at]) * (1 + 2 * tolerance));
       free(equivalent);
       free(mises);
@@ -297,11 +265,11 @@ static void identical_bodies_share_a_field(void) {
   CHECK_STATUS(BRN_OK, brn_scene_set_subsurface(scene, &wanted));
   CHECK_STATUS(BRN_OK, brn_run_create(engine, scene, &run));
   CHECK_STATUS(BRN_OK, brn_run_advance(run, NULL, NULL));
-  one = increment(run, 0);
+  one = increment_of(run, 0);
   CHECK(one.max_equivalent_plastic_strain > 0);
   CHECK(one.upper_max_equivalent_plastic_strain == one.max_equivalent_plastic_strain);
-  lower = field(run, BRN_FIELD_VON_MISES, cuboids);
-  upper = field(run, BRN_FIELD_UPPER_VON_MISES, cuboids);
+  lower = field_of(run, BRN_FIELD_VON_MISES, cuboids);
+  upper = field_of(run, BRN_FIELD_UPPER_VON_MISES, cuboids);
   CHECK(memcmp(lower, upper, cuboids * sizeof *lower) == 0);
   free(upper);
   free(lower);

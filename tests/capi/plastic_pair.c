@@ -18,7 +18,7 @@ static brn_scene *pair_scene(void) {
   brn_scene *scene = sphere_scene(n, increments - 1); /* 1 N: contact radius about 17 um */
   const brn_body upper = steel_body();
   const brn_step unload = force_step(0.0, 1);
-  brn_hardening hardening;
+  brn_hardening hardening = linear_hardening(500e6);
   brn_solver solver;
   brn_subsurface wanted;
   brn_solver_init(&solver);
@@ -28,10 +28,6 @@ static brn_scene *pair_scene(void) {
   wanted.layer_thickness = 2.8e-6;
   wanted.fields = fields;
   wanted.field_count = sizeof fields / sizeof fields[0];
-  brn_hardening_init(&hardening);
-  hardening.law = BRN_HARDENING_LINEAR;
-  hardening.yield_stress = 500e6;
-  hardening.hardening_modulus = 5e9;
   CHECK_STATUS(BRN_OK, brn_scene_set_body(scene, BRN_UPPER, &upper));
   CHECK_STATUS(BRN_OK, brn_scene_set_hardening(scene, BRN_LOWER, &hardening));
   hardening.law = BRN_HARDENING_PERFECT;
@@ -50,13 +46,6 @@ static double *field(brn_run *run, int32_t which, size_t *count) {
   values = malloc((*count + 1) * sizeof *values);
   CHECK_STATUS(BRN_OK, brn_run_get_field(run, which, values, *count, count));
   return values;
-}
-
-static double largest(const double *values, size_t count) {
-  double most = 0;
-  size_t k;
-  for (k = 0; k < count; ++k) most = fabs(values[k]) > most ? fabs(values[k]) : most;
-  return most;
 }
 
 static void each_body_has_its_own_state(void) {

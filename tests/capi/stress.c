@@ -29,14 +29,6 @@ static brn_increment last_of(brn_run *run) {
   return result;
 }
 
-static double *field_of(brn_run *run, int32_t field, size_t expected) {
-  double *values = malloc(expected * sizeof *values);
-  size_t count = 0;
-  CHECK_STATUS(BRN_OK, brn_run_get_field(run, field, values, expected, &count));
-  CHECK(count == expected);
-  return values;
-}
-
 static int has_stress_stage(brn_run *run) {
   brn_plan_item item;
   int32_t k;

@@ -45,16 +45,6 @@ static brn_step tilted(double sx, double sy) {
   return step;
 }
 
-static void add(brn_scene *scene, brn_step step) {
-  CHECK_STATUS(BRN_OK, brn_scene_add_step(scene, &step));
-}
-
-static void field_of(brn_run *run, int32_t field, double *values) {
-  size_t count = 0;
-  CHECK_STATUS(BRN_OK, brn_run_get_field(run, field, values, nodes, &count));
-  CHECK(count == nodes);
-}
-
 static void rotation_is_fixed_unless_asked_for(void) {
   brn_step step;
   CHECK(BRN_ROTATION_FIXED == 0 && BRN_ROTATION_FREE == 1);
@@ -85,10 +75,10 @@ static void the_pressure_is_centred_where_the_force_acts(void) {
     CHECK(result.tilt[0] * places[k][0] <= 0.0 && result.tilt[1] * places[k][1] <= 0.0);
     CHECK((result.tilt[0] < -1e-6) == (places[k][0] > 0.0));
 
-    field_of(run, BRN_FIELD_GAP, gap);
-    field_of(run, BRN_FIELD_UNDEFORMED_GAP, undeformed);
-    field_of(run, BRN_FIELD_DISPLACEMENT, displacement);
-    field_of(run, BRN_FIELD_PRESSURE, pressure);
+    read_field(run, BRN_FIELD_GAP, gap, nodes);
+    read_field(run, BRN_FIELD_UNDEFORMED_GAP, undeformed, nodes);
+    read_field(run, BRN_FIELD_DISPLACEMENT, displacement, nodes);
+    read_field(run, BRN_FIELD_PRESSURE, pressure, nodes);
     for (m = 0; m < nodes; ++m) largest = fmax(largest, displacement[m]);
     for (m = 0; m < nodes; ++m) {
       const double x = ((double)(m % n) - 0.5 * (n - 1)) * spacing, y = ((double)(m / n) - 0.5 * (n - 1)) * spacing;
@@ -114,14 +104,14 @@ static void slopes_give_back_the_state_that_they_came_from(void) {
   run = start(engine, scene);
   CHECK_STATUS(BRN_OK, brn_run_execute(run, NULL, NULL));
   free_one = increment_of(run, 0);
-  field_of(run, BRN_FIELD_PRESSURE, by_place);
+  read_field(run, BRN_FIELD_PRESSURE, by_place, nodes);
   brn_run_destroy(run);
 
   add(again, tilted(free_one.tilt[0], free_one.tilt[1]));
   run = start(engine, again);
   CHECK_STATUS(BRN_OK, brn_run_execute(run, NULL, NULL));
   fixed_one = increment_of(run, 0);
-  field_of(run, BRN_FIELD_PRESSURE, by_slopes);
+  read_field(run, BRN_FIELD_PRESSURE, by_slopes, nodes);
   CHECK(fixed_one.tilt[0] == free_one.tilt[0] && fixed_one.tilt[1] == free_one.tilt[1]);
   CHECK(fabs(fixed_one.approach / free_one.approach - 1.0) < 1e-7);
   CHECK(fabs(fixed_one.centre_of_force[0] - 2e-6) < 10.0 * place_tolerance);
@@ -193,7 +183,7 @@ static void a_run_resumes_within_its_history(void) {
   int done, k;
   CHECK_STATUS(BRN_OK, brn_run_execute(run, NULL, NULL));
   whole = increment_of(run, increments - 1);
-  field_of(run, BRN_FIELD_PRESSURE, expected);
+  read_field(run, BRN_FIELD_PRESSURE, expected, nodes);
   brn_run_destroy(run);
   add(different, beside(0.0, 0.0));
   for (done = 1; done < increments; ++done) {
@@ -210,7 +200,7 @@ static void a_run_resumes_within_its_history(void) {
     free(data);
     CHECK_STATUS(BRN_OK, brn_run_execute(run, NULL, NULL));
     resumed = increment_of(run, increments - 1);
-    field_of(run, BRN_FIELD_PRESSURE, pressure);
+    read_field(run, BRN_FIELD_PRESSURE, pressure, nodes);
     CHECK(memcmp(expected, pressure, sizeof expected) == 0);
     CHECK(memcmp(whole.tilt, resumed.tilt, sizeof whole.tilt) == 0);
     CHECK(whole.approach == resumed.approach && whole.normal_force == resumed.normal_force);
