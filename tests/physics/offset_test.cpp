@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "physics/nanoindentation.h"
 #include "scene/run.h"
 #include "subsurface/depths.h"
 
@@ -32,11 +33,6 @@ using scene::Scene;
 using scene::Step;
 using scene::StepDrive;
 using scene::Which;
-
-constexpr double kYoung = 210e9, kPoisson = 0.3;
-constexpr double kModulus = kYoung / (1 - kPoisson * kPoisson);  // against a rigid body
-constexpr double kRadius = 105e-6;
-const plastic::Swift kSteel{1240e6, 30, 0.085, 1e6};
 
 std::unique_ptr<scene::Engine> engine_of(int threads = 1) {
   scene::EngineOptions options;

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "influence/eigenstrain.h"
+#include "physics/nanoindentation.h"
 #include "plastic/elastic_plastic.h"
 #include "scene/run.h"
 #include "support/workbench.h"
@@ -29,11 +30,6 @@ using plastic::Pair;
 using plastic::PlasticBody;
 using plastic::PlasticMaterial;
 using plastic::PlasticSolution;
-
-constexpr double kYoung = 210e9, kPoisson = 0.3;
-constexpr double kModulus = kYoung / (1 - kPoisson * kPoisson);  // against a rigid body
-constexpr double kRadius = 105e-6;
-const plastic::Swift kSteel{1240e6, 30, 0.085, 1e6};
 
 struct HertzOnAxis {
   double yield_ratio = 0;  // largest von Mises stress / p0

@@ -12,6 +12,7 @@
 #include <numbers>
 #include <vector>
 
+#include "physics/nanoindentation.h"
 #include "plastic/elastic_plastic.h"
 #include "subsurface/invariants.h"
 #include "support/sliding_sphere.h"
@@ -23,10 +24,6 @@ namespace {
 using plastic::PlasticBody;
 using plastic::PlasticSolution;
 using plastic::TractionRatio;
-
-constexpr double kYoung = 210e9, kPoisson = 0.3;
-constexpr double kModulus = kYoung / (1 - kPoisson * kPoisson);  // against a rigid body
-constexpr double kRadius = 105e-6;
 
 /// A rigid sphere on a body of one material, or between two of it.
 struct Slide {
@@ -125,7 +122,6 @@ constexpr std::int64_t kNodes = 20;
 constexpr double kCell = 0.6e-6;
 constexpr plastic::Layers kLayers{14, 0.6e-6};
 constexpr double kTolerance = 1e-9;
-const plastic::Swift kSteel{1240e6, 30, 0.085, 1e6};
 
 /// Component c of the plastic strain below all nodes; 6: equivalent.
 std::vector<double> strain_below(const Slide& slide, int which, std::size_t c, bool mirrored = false) {
